@@ -13,9 +13,9 @@ from tracer.runtime.kernel_cache import cache_root
 from viewer.util.resources import embedded_scenes
 
 TRAVERSE, TREE = "tracer/geometry/kdtree/traverse.py", "tracer/geometry/kdtree/tree.py"
-NEAREST = "tracer/geometry/kdtree/nearest.py"
+NEAREST = "tracer/geometry/kdtree/tree.py"
 PACKET, SINGLE = "tracer/geometry/bvh8/packet_tree.py", "tracer/geometry/bvh8/single_ray.py"
-STREAM, ROOTS = "tracer/geometry/bvh8/stream.py", "tracer/geometry/bvh8/roots.py"
+STREAM, ROOTS = "tracer/geometry/bvh8/stream.py", "tracer/geometry/bvh8/packet_tree.py"
 CACHE, LOOKUP = "tracer/culling/occluder_cache.py", "tracer/culling/certified/lookup.py"
 CERTIFY = "tracer/culling/certified/certify.py"
 WALKED, LAMPS = "tracer/culling/certified/tree_walk.py", "tracer/culling/certified/asking_lamps.py"

@@ -59,8 +59,8 @@ class Edit:
 
 
 EDITS = (
-    Edit("tracer/geometry/kdtree/nearest.py", "        s.counts[STEPS] += leaf.steps\n", 1),
-    Edit("tracer/geometry/kdtree/nearest.py", "            s.counts[TESTS] += 1\n", 1),
+    Edit("tracer/geometry/kdtree/tree.py", "        s.counts[STEPS] += leaf.steps\n", 1),
+    Edit("tracer/geometry/kdtree/tree.py", "            s.counts[TESTS] += 1\n", 1),
     Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps = 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),

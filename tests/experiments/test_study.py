@@ -112,3 +112,14 @@ def test_missing_keys_and_frames(tmp_path: Path) -> None:
     study = read(tmp_path, GOOD.replace("last = 5", "last = 8"))
     with pytest.raises(ValueError, match="the frames 0 to 8 are not all of room.aff, whose path has 8"):
         study.tasks("room.aff", load_scene(tmp_path / "room.aff"), "code")
+
+
+def test_what_would_fill_the_memory_is_refused_in_one_line(tmp_path: Path) -> None:
+    """Of 100,000 seeds it is found at once which is given twice, and 300 times a million frames make no tasks."""
+    seeds = [*range(100_000), 7]
+    with pytest.raises(StudyError, match="line 9: seeds: 7 is given twice"):
+        read(tmp_path, GOOD.replace("seeds = [1, 2]", f"seeds = {seeds}"))
+    long = GOOD.replace("seeds = [1, 2]", f"seeds = {seeds[:300]}").replace("frames = 8\nlast = 5", "frames = 1000000")
+    study = read(tmp_path, long)
+    with pytest.raises(ValueError, match=r"frames of room.aff, by methods, settings and 300 seeds; at most 1,000,000"):
+        study.tasks("room.aff", load_scene(tmp_path / "room.aff"), "code")

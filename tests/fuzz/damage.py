@@ -70,4 +70,13 @@ def _word32(data: bytes, rng: np.random.Generator) -> bytes:
     return data[:at] + int(extreme[rng.integers(len(extreme))]).to_bytes(4, "little") + data[at + 4 :]
 
 
-_DAMAGES = (_other_number, _other_number, _other_number, _other_word, _cut, _gap, _twice, _bytes, _word32)
+def _line(data: bytes, rng: np.random.Generator) -> bytes:
+    """One of the first lines with words left out, given twice or in another order, as in the head of a PLY file."""
+    lines = data.split(b"\n")
+    at = int(rng.integers(min(len(lines), 30)))
+    words = lines[at].split()
+    chosen = rng.integers(max(len(words), 1), size=rng.integers(len(words) + 2)) if words else ()
+    return b"\n".join([*lines[:at], b" ".join(words[k] for k in chosen), *lines[at + 1 :]])
+
+
+_DAMAGES = (_other_number, _other_number, _other_number, _other_word, _cut, _gap, _twice, _bytes, _word32, _line)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tracer.scene.assembly import resolve
@@ -133,6 +133,7 @@ names = st.sampled_from(["a", "b", "ghost"])
 matrices = st.integers(0, 2**32).map(lambda seed: np.random.default_rng(seed).normal(size=(4, 4)))
 
 
+@settings(deadline=None)
 @given(st.lists(names | matrices, max_size=8))
 def test_resolving_keeps_the_product(chain):
     values = {"a": np.diag([1.0, 2, 3, 1]), "b": np.eye(4)[[1, 2, 0, 3]]}

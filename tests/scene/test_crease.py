@@ -78,3 +78,10 @@ def test_normals_of_the_file_and_the_word_of_gltf_come_first(tmp_path):
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 .6 .8\nf 1//1 2//1 3//1\n")
     given = load_scene(tmp_path / "a.obj", meshes=IN_STUDIO).objects[0].triangles.normals
     assert given[0] == pytest.approx(np.broadcast_to((0, 0.6, 0.8), (3, 3)))
+
+
+def test_coordinates_beyond_float32_are_named_in_silence(tmp_path, recwarn):
+    """The triangle is dropped, and numpy says nothing to the terminal on the way."""
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1e300 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 1 4 3\n")
+    scene = load_scene(tmp_path / "a.obj", meshes=IN_STUDIO)
+    assert "a triangle with a corner beyond 1e+09 is dropped" in scene.warnings[0] and not recwarn.list

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.platforms import permissions, posix_only
-from tracer.scene.load import load_scene, scene_info
+from tracer.scene.load import load_scene, load_visible_scene, scene_info
 from tracer.scene.model import Cancelled, SceneError
 
 TRIANGLE = "p 3 0 0 0 1 0 0 0 1 0\n"
@@ -137,3 +137,8 @@ def test_info_of_nothing(write):
     assert info["bounds"] is None
     assert info["triangles"] == 0
     json.dumps(info)
+
+
+def test_a_scene_of_what_is_too_large_says_so(write):
+    with pytest.raises(SceneError, match=r"scene\.aff:1: a sphere beyond 1e\+09 is dropped; .*; nothing else is to be"):
+        load_visible_scene(write("s 0 0 0 1e12\ns 0 0 0 2e12\n"))

@@ -217,3 +217,17 @@ def test_degenerate_and_nan_triangles(tmp_path):
     assert scene.triangle_count == 2
     assert len(scene.warnings) == 2
     assert "is not a finite number is dropped" in " ".join(scene.warnings)
+
+
+@pytest.mark.parametrize("texture", [1, "a", [], {"index": 7}])
+def test_a_texture_that_is_none_leaves_the_material(tmp_path, texture):
+    files = trimesh.exchange.gltf.export_gltf(trimesh.Scene(trimesh.creation.box()))
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    tree = json.loads(files["model.gltf"])
+    tree["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": texture}}]
+    for primitive in tree["meshes"][0]["primitives"]:
+        primitive["material"] = 0
+    (tmp_path / "model.gltf").write_text(json.dumps(tree))
+    scene = load_scene(tmp_path / "model.gltf")
+    assert scene.triangle_count == 12 and not scene.textures

@@ -12,6 +12,7 @@ from tracer.simd import local_memory
 from tracer.simd.records import (
     F32,
     Bytes,
+    F32At,
     F32x2D,
     F32x3D,
     I32x2D,
@@ -20,6 +21,7 @@ from tracer.simd.records import (
     Row,
     Row3,
     block_size,
+    offset_of,
     pack,
     reading,
     row_count,
@@ -67,6 +69,7 @@ class Block(NamedTuple):
     flags: Bytes
     pairs: I32x2D
     cube: F32x3D
+    flat: F32At
     factor: float
     chosen: bool
 
@@ -79,19 +82,29 @@ def _block(address):
     block = block_at(address)
     block.pairs[1, 0] = -1
     cube, inner = block.cube, block.inner
-    return inner.values[1], inner.number, block.flags[1], cube[1, 2, 0], cube.shape, block.factor, block.chosen
+    return (
+        inner.values[1],
+        inner.number,
+        block.flags[1],
+        cube[1, 2, 0],
+        cube.shape,
+        block.flat[6],
+        block.factor,
+        block.chosen,
+    )
 
 
 def _some_block() -> Block:
     pairs, cube = np.zeros((3, 2), np.int32), np.arange(24, dtype=np.float32).reshape(2, 3, 4)
-    return Block(Inner(np.array([1, 2.5], np.float32), -7), np.array([False, True]), pairs, cube, 0.1, True)
+    inner = Inner(np.array([1, 2.5], np.float32), -7)
+    return Block(inner, np.array([False, True]), pairs, cube, cube, 0.1, True)
 
 
 def test_a_block_is_read_as_it_was_packed():
     block = _some_block()
     packed = pack(block)
     assert packed.nbytes == block_size(Block)
-    assert _block(packed.ctypes.data) == (2.5, -7, 1, 20.0, (2, 3, 4), 0.1, True)
+    assert _block(packed.ctypes.data) == (2.5, -7, 1, 20.0, (2, 3, 4), 6.0, 0.1, True)
     assert block.pairs.tolist() == [[0, 0], [-1, 0], [0, 0]], "arrays are not copied"
     assert _block(pack(block._replace(chosen=False)).ctypes.data)[-1] is False
 
@@ -111,6 +124,11 @@ class Call(NamedTuple):
     tile: int
 
 
+class Pair(NamedTuple):
+    one: int
+    other: int
+
+
 call_at, write_call, CALL = reading(Call), writing(Call), block_size(Call)
 
 
@@ -124,3 +142,7 @@ def _through_memory(rows):
 
 def test_a_kernel_writes_a_block_for_another():
     assert _through_memory(np.arange(12, dtype=np.float32).reshape(3, 4)) == (3, 6.0, (3, 4), 9)
+
+
+def test_a_field_of_whole_numbers_has_its_place():
+    assert (offset_of(Pair, "one"), offset_of(Pair, "other"), block_size(Pair)) == (0, 8, 16)

@@ -13,9 +13,9 @@ import tracer
 from tests.tracing.brute import Meetings, ray_in
 from tests.tracing.trees8 import walk
 from tracer.geometry.boxes import inverse
-from tracer.geometry.bvh8.layout import BOX, COUNT, Tree
+from tracer.geometry.bvh8.layout import BLOCK, BOX, COUNT, PRIMITIVES, Tree
 from tracer.geometry.bvh8.packet import FAR
-from tracer.geometry.bvh8.placed import BLOCK, NUMBERS, triangle_of
+from tracer.geometry.bvh8.placed import triangle_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Ray, Rays
@@ -48,7 +48,7 @@ def _meet_blocks(blocks, which, rays, t, u, v):
                 scale = np.float32(1) / area
                 where = as_f32(as_i32(terms.height) ^ sign) * scale
                 if crosses and where >= enter and where <= leave and where > ray.t_min:
-                    number = load_i32(block + NUMBERS + 4 * k)
+                    number = load_i32(block + 4 * (PRIMITIVES + k))
                     t[i, number], u[i, number], v[i, number] = where, u_area * scale, v_area * scale
 
 

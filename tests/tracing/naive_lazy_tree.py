@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.tracing.naive_tree import F, Line, Traversal
-from tracer.geometry.lazy_tree.build import HEADER, open_node
-from tracer.geometry.lazy_tree.node import KIND, LOWER_MOVES, OBJECTS, SUBTREE, UNBUILT, UPPER_MOVES
-from tracer.geometry.lazy_tree.structure import Parts
+from tracer.geometry.lazy_tree.build import open_node
+from tracer.geometry.lazy_tree.node import HEADER, KIND, LOWER_MOVES, OBJECTS, SUBTREE, UPPER_MOVES
+from tracer.geometry.lazy_tree.traverse import LazyWorld
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING, STATIC_GEOMETRY
 
 REMEMBERED = 8
@@ -49,8 +49,8 @@ def node_at(address: int, pause: int = 0) -> Node:
     """The node at an address, built if nobody has been there yet."""
     while True:
         words = tuple((ctypes.c_int64 * 4).from_address(address))
-        kind = words[0] & KIND
-        if kind < UNBUILT or kind in (SUBTREE, OBJECTS):
+        if words[0] >= 0:
+            kind = words[0] & KIND
             plane = np.array([words[1]], np.int64).astype(np.int32).view(np.float32)[0]
             return Node(kind, words[0] & ~KIND, plane, words[2], words[3])
         open_node.call(address, pause, 0, 0, 0)
@@ -59,7 +59,7 @@ def node_at(address: int, pause: int = 0) -> Node:
 class LazyTraversal(Traversal):
     """One ray's way to an answer.  `steps` nodes were entered and `tests` primitives tested."""
 
-    def __init__(self, parts: Parts, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
+    def __init__(self, parts: LazyWorld, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
         super().__init__(None, line, t_min, t_max, meets)  # type: ignore[arg-type]
         self.world, self.searched = parts, list[int]()
         self.over: object = None  # the way through a moving object that has ended with a hit

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracer.geometry.kdtree.tree import Parts, Trees
+from tracer.geometry.kdtree.tree import KdWorld, Trees
 
 F = np.float32
 Vector = tuple[np.float32, np.float32, np.float32]
@@ -49,7 +49,7 @@ class Traversal:
     meets (primitives,) float32 is where the ray meets each, inf where it does not.
     """
 
-    def __init__(self, parts: Parts, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
+    def __init__(self, parts: KdWorld, line: Line, t_min: float, t_max: float, meets: np.ndarray) -> None:
         self.parts, self.line, self.meets = parts, line, meets
         self.t_min, self.t_max = F(t_min), F(t_max)
         self.steps = self.tests = 0
@@ -85,11 +85,11 @@ class Traversal:
 
         enter, leave = self.line.within(parts.boxes[0], self.t_min, self.t_max)
         yield from (items for items, _, _ in self._walk(parts.static, 0, self.line, enter, leave, limit))
-        for top, box in ((parts.resting, parts.resting_box), (parts.moving, parts.moving_box)):
-            if not len(top.items):
+        for top in (parts.resting, parts.moving):
+            if not top.there:
                 continue
-            enter, leave = self.line.within(box, self.t_min, self.t_max)
-            for objects, first, last in self._walk(top, 0, self.line, enter, leave, limit):
+            enter, leave = self.line.within(top.box, self.t_min, self.t_max)
+            for objects, first, last in self._walk(top.trees, 0, self.line, enter, leave, limit):
                 first, last = first - F(1e-5) * abs(first), last + F(1e-5) * abs(last)
                 for o in objects:
                     line = self.line.carried(parts.to_object[o])

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
 from tracer.geometry.bvh8.packet import MEMORY, fill, lanes_inside, open_vectors
-from tracer.geometry.bvh8.packet_group import frusta_of, group_of, lead_of, reaches_of
+from tracer.geometry.bvh8.packet_group import box_at, boxes_at, entering, frusta_of, group_of, lead_of, reaches_of
 from tracer.geometry.bvh8.placed import child_planes
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Rays, ray_batch

@@ -35,7 +35,7 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray) -> np.nd
     n, placed, structure = len(rays.t_min), world.placed, world.structure
     met = brute.meet_all(world, rays, there)
     hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
-    blocked, sums, parts = np.zeros(n, np.uint8), np.zeros((4, 2), np.int64), structure.parts
+    blocked, sums, parts = np.zeros(n, np.uint8), np.zeros((4, 2), np.int64), structure.world
     nearest = batch_of(rays, hits)
     for i in range(n):
         line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
@@ -165,7 +165,7 @@ def test_splits_lie_at_the_borders_of_pieces() -> None:
     part_of = np.repeat(np.arange(2, dtype=np.int32), [len(table), 200])
     pieces = (replace(made.objects[0], parts=("one", "two"), part_of=part_of),)
     world = tracer.World(replace(made, objects=pieces), 0.0, LAZY)
-    root = node_at(world.structure.parts.root)
+    root = node_at(world.structure.world.root)
     borders = np.array([corners[: len(table)].reshape(-1, 3).max(0)[0], corners[len(table) :].reshape(-1, 3).min(0)[0]])
     assert root.kind == 0 and np.abs(borders - root.plane).min() < 1e-6
 
@@ -173,7 +173,7 @@ def test_splits_lie_at_the_borders_of_pieces() -> None:
 def test_objects_hang_where_they_are_and_only_there() -> None:
     rng = np.random.default_rng(8)
     world = tracer.World(scene(random_corners(rng, 2000, 0.02), dynamic=movers(rng, 20, 4)), 0.0, LAZY)
-    parts, seen = world.structure.parts, set()
+    parts, seen = world.structure.world, set()
     boxes = transform_boxes(parts.object_boxes.astype(np.float64), world.pose(0.0).to_world)
 
     def descend(address: int, box: np.ndarray) -> None:

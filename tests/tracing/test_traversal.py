@@ -41,7 +41,7 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: b
         structure.closest.call(placed.data, nearest.ctypes.data, i, i + 1, counts[0].ctypes.data)
         structure.any_hit.call(placed.data, whether.ctypes.data, i, i + 1, counts[1].ctypes.data)
         line = Line(tuple(rays.origin[:, i]), tuple(rays.direction[:, i]))
-        near, whatever = (Traversal(structure.parts, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
+        near, whatever = (Traversal(structure.world, line, rays.t_min[i], rays.t_max[i], met.t[i]) for _ in range(2))
         assert (hits.t[i], hits.primitive[i]) == near.closest()
         assert blocked[i] == whatever.any() == (hits.primitive[i] >= 0)
         if edges:

@@ -11,10 +11,9 @@ import pytest
 import tracer
 from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.worlds import random_corners, scene
-from tracer.geometry.bvh8 import pieces
-from tracer.geometry.bvh8.layout import CHILDREN, COUNT, PIECE
-from tracer.geometry.lazy_tree.build import HEADER
-from tracer.geometry.lazy_tree.node import KIND, SUBTREE, UNBUILT
+from tracer.geometry.bvh8 import layout, subtrees
+from tracer.geometry.bvh8.layout import CHILDREN, COUNT
+from tracer.geometry.lazy_tree.node import HEADER, SUBTREE
 from tracer.geometry.lazy_tree.structure import LazyTree
 from tracer.geometry.rays import Rays
 from tracer.geometry.tree_parts import NOWHERE, PartsAt, most_of
@@ -74,9 +73,8 @@ class _Leaves:
 def _leaves(address: int, low: np.ndarray, high: np.ndarray, level: int) -> Iterator[_Leaf]:
     """All parts below a node, as they lie in memory; nothing is built."""
     word, plane_bits, first, second = (ctypes.c_int64 * 4).from_address(address)
-    kind = word & KIND
-    if kind >= UNBUILT:
-        if kind != SUBTREE:
+    if word < 0 or word >= SUBTREE:
+        if word != SUBTREE:
             yield _Leaf(low, high, level, False, -1)
             return
         words, _ = (ctypes.c_int64 * 2).from_address(first)
@@ -86,7 +84,7 @@ def _leaves(address: int, low: np.ndarray, high: np.ndarray, level: int) -> Iter
     plane = np.array([plane_bits], np.int64).astype(np.int32).view(np.float32)[0]
     for side, child in enumerate((first, second)):
         lower, upper = low.copy(), high.copy()
-        (lower if side else upper)[kind] = plane
+        (lower if side else upper)[word] = plane
         yield from _leaves(child, lower, upper, level + 1)
 
 
@@ -149,18 +147,18 @@ def test_a_tree_that_is_gone_says_so() -> None:
         assert tracer.World(made(50), 0.0, accelerator, lazy=True).parts_built() is None
 
 
-# --- a large 8-wide tree in pieces -----------------------------------------------------------------
+# --- a large 8-wide tree of subtrees ---------------------------------------------------------------
 
 
 @pytest.mark.parametrize("many", [0, 2, 400])
-def test_each_point_lies_in_the_deepest_box_of_pieces_that_are_there(many: int, monkeypatch) -> None:
-    monkeypatch.setattr(pieces, "LARGE", 10)
-    monkeypatch.setattr(pieces, "PIECE_SIZE", 64)
+def test_each_point_lies_in_the_deepest_box_of_subtrees_that_are_there(many: int, monkeypatch) -> None:
+    monkeypatch.setattr(subtrees, "LARGE", 10)
+    monkeypatch.setattr(subtrees, "SUBTREE_SIZE", 64)
     world = tracer.World(made(), 0.0, lazy=True)
     if many:
         world.closest_hits(few(random_rays(np.random.default_rng(1), 400), many))
     points, across = points_around(world), 0
-    found, tree = asked(world, points, across), world.structure._pieces
+    found, tree = asked(world, points, across), world.structure._large
     boxes: list[tuple[Box, int, int, int, bool, int]] = []  # with the number, level, piece, whether it is there, held
 
     def gather(node: int, level: int, piece: int) -> None:
@@ -169,8 +167,8 @@ def test_each_point_lies_in_the_deepest_box_of_pieces_that_are_there(many: int, 
         for slot in np.flatnonzero(codes != ~0).tolist():
             code, box = int(codes[slot]), (sides[0, :, slot], sides[1, :, slot])
             owner, there, held = piece, True, -1
-            if code >= PIECE:
-                owner = code - PIECE
+            if code >= layout.SUBTREE:
+                owner = code - layout.SUBTREE
                 code = int(tree.table[1 + owner])
                 there = code >= 0
             elif code < 0:

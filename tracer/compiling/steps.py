@@ -24,7 +24,7 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.frame_in_progress import FrameInProgress
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
-from tracer.geometry.queries import HIT_PRIMITIVE, HIT_T, Placed
+from tracer.geometry.queries import Placed, read_batch
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.world import STRUCTURES
 from tracer.inspect import ray_probe
@@ -50,7 +50,7 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.settings import Settings
-from tracer.simd import f32_at, i32_at, load_i64
+from tracer.simd import f32_at, i32_at
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 SHARES = {
@@ -255,7 +255,8 @@ def steps_of(part: str, lights: int, accelerator: str) -> Iterator[str]:
 @entry
 def _no_hit(data, batch, first, last, counts):
     """Rays first to last - 1 meet nothing."""
-    t, primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
+    hits = read_batch(batch)
+    t, primitive = f32_at(hits.t), i32_at(hits.primitive)
     for i in range(first, last):
         t[i], primitive[i] = INFINITY, MISS
 

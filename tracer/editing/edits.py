@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.animation import Animation, TrackSet
-from tracer.scene.arrays import Float64, Int32
+from tracer.scene.arrays import Float64, Int32, Vector
 from tracer.scene.assembly import under_matrix
 from tracer.scene.deformation import deformed
 from tracer.scene.fingerprint import code_of
-from tracer.scene.lights import Light, Vector
+from tracer.scene.lights import Light
 from tracer.scene.model import Quadrics, Scene, SceneObject, Triangles
 from tracer.scene.normals import unit_normals
 from tracer.scene.things import Held, Thing, held_by, owner_of, things

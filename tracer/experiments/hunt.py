@@ -26,6 +26,7 @@ from tracer.inspect.mode_origins import NEVER, ModeOrigins
 from tracer.inspect.ray_tree import ray_tree
 from tracer.method import Method
 from tracer.renderer import Renderer
+from tracer.scene.arrays import vector
 from tracer.scene.model import Camera, Cancelled, Scene
 
 OnFrame = Callable[[str, Frame], None]
@@ -239,8 +240,8 @@ class _Hunter:
                         place=place,
                         own_camera=own_camera,
                         difference=difference,
-                        color=_triple(color),
-                        reference=_triple(right),
+                        color=vector(color),
+                        reference=vector(right),
                         pixels=pixels,
                         answers=int(frame.wrong.sum()),
                         differing=int(np.count_nonzero(differing)),
@@ -312,7 +313,7 @@ class _Hunter:
         renderer = Renderer(self._scene, self._settings, world=self._world)
         self._trace_before(renderer, before)
         frame = renderer.render(find.time, find.seen_camera, self._cancel)
-        return _triple(frame.color[find.y, find.x]) == find.color
+        return vector(frame.color[find.y, find.x]) == find.color
 
     def _trace_before(self, renderer: Renderer, before: tuple[WarmupFrame, ...]) -> _History:
         renderer.settings, history = replace(self._settings, verify=False), _History(self._scene)
@@ -359,9 +360,5 @@ class _Hunter:
             ahead = target - place
             direction = ahead / max(float(np.linalg.norm(ahead)), 1e-300) + aside
             if not blocked and np.linalg.norm(direction) > 1e-6 and np.linalg.norm(ahead) > 1e-3 * distance:
-                return replace(camera, position=_triple(place), direction=_triple(direction))
+                return replace(camera, position=vector(place), direction=vector(direction))
         return camera
-
-
-def _triple(values: np.ndarray) -> tuple[float, float, float]:
-    return float(values[0]), float(values[1]), float(values[2])

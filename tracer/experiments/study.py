@@ -12,6 +12,7 @@ import hashlib
 import math
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -24,6 +25,7 @@ import numpy as np
 
 from tracer.experiments.experiment import path_times
 from tracer.method import Method
+from tracer.scene.arrays import vector
 from tracer.scene.bounds import bounds
 from tracer.scene.files import read_regular
 from tracer.scene.model import Camera, Scene
@@ -36,6 +38,8 @@ ASPECTS = tuple(one.name for one in settings_of(Settings) if one.name not in _NO
 """Settings that a study may vary, beside sizes and methods."""
 MOST_BYTES = 1 << 20
 MOST_SETTINGS = 10_000
+MOST_FRAMES = 1_000_000
+"""Frames that a study traces by a scene, those before others included: ten million would fill the memory with tasks."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +98,14 @@ class Study:
                 f"{len(times)}; change first and last"
             )
         numbers = range(self.first, last + 1)
+        learning = sum(Method.parse(method).learns for method in self.methods)
+        each = len(self.methods) + learning * min(self.warmup or 0, last)
+        traced = len(numbers) * each * len(self.settings) * len(self.seeds)
+        if traced > MOST_FRAMES:
+            raise ValueError(
+                f"{self.path}: {traced:,} frames of {name}, by methods, settings and {len(self.seeds):,} seeds; at "
+                f"most {MOST_FRAMES:,} are traced: give fewer, or change first and last of the path"
+            )
         found: list[Task] = []
         for settings, method, seed in product(self.settings, self.methods, self.seeds):
             wanted = replace(settings, method=method, threads=1)
@@ -158,8 +170,7 @@ class Task:
         aside *= lots.uniform() / max(float(np.linalg.norm(aside)), 1e-300)
         diagonal = 0.0 if box is None else float(np.linalg.norm(box[1] - box[0]))
         own = scene.camera_at(time)
-        x, y, z = (float(v) for v in np.asarray(own.position) + self.shake * diagonal * aside)
-        return replace(own, position=(x, y, z))
+        return replace(own, position=vector(np.asarray(own.position) + self.shake * diagonal * aside))
 
     def in_words(self) -> str:
         """Which it is, for messages."""
@@ -333,7 +344,8 @@ class _Reader:
     # --- what is wrong, and where -----------------------------------------------------------------
 
     def _check_once(self, name: str, table: str, values: Any) -> None:
-        twice = [value for value in values if values.count(value) > 1] if isinstance(values, tuple) else []
+        times = Counter(values if isinstance(values, tuple) else ())
+        twice = [value for value, number in times.items() if number > 1]
         if twice:
             raise self._wrong(name, table, f"{twice[0]!r} is given twice; once is enough")
 

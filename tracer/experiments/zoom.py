@@ -20,6 +20,7 @@ from tracer.experiments.runner import Run
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
+from tracer.scene.arrays import Vector, vector
 from tracer.scene.model import Camera, Cancelled, Scene
 
 STILL_FRAMES = 3
@@ -28,8 +29,6 @@ METHOD = "paper"  # whose zoom factor is tested
 
 NEAREST = 1e-3
 """Least part of the distance at the start to end at: nearer, the pixels of float32 coordinates are no longer even."""
-
-Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ class Aim:
     def after(self, steps: int, ratio: float) -> Camera:
         """The camera after so many steps, each to `ratio` (0 to 1) of the distance before."""
         way = np.subtract(self.camera.position, self.target) * ratio**steps
-        return replace(self.camera, position=_triple(np.add(self.target, way)))
+        return replace(self.camera, position=vector(np.add(self.target, way)))
 
 
 @dataclass(frozen=True)
@@ -171,10 +170,10 @@ def aim(frame: Frame, primitive: int) -> Aim:
         # The axis goes between those pixels. On a plane the inverse of this distance is linear over the picture, so
         # that its mean is the axis's own: a point beside the surface would be passed when the camera comes near.
         about = np.isin(rows, sides[0]) & np.isin(columns, sides[1])
-        return Aim(primitive, frame.time, camera, _triple(camera.position + forward / np.mean(1.0 / ahead[about])))
+        return Aim(primitive, frame.time, camera, vector(camera.position + forward / np.mean(1.0 / ahead[about])))
     points = camera.position + rays * ahead[:, None]
     target = points[np.argmin(np.linalg.norm(points - points.mean(0), axis=1))]
-    return Aim(primitive, frame.time, replace(camera, direction=_triple(target - camera.position)), _triple(target))
+    return Aim(primitive, frame.time, replace(camera, direction=vector(target - camera.position)), vector(target))
 
 
 def primitive_at(frame: Frame, x: int, y: int) -> int:
@@ -348,7 +347,3 @@ def _step(frame: Frame, start: Aim, number: int, before: list[Step]) -> Step:
         culled=shadow.culled,
         dynamic_only=shadow.dynamic_only,
     )
-
-
-def _triple(v: np.ndarray) -> Vector:
-    return float(v[0]), float(v[1]), float(v[2])

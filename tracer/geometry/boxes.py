@@ -45,6 +45,14 @@ def inverse(x):
 
 
 @inlined
+def interval(triangles, i, axis):
+    """The lower and upper end of the i-th of triangles (n, 9), corner and two edges, along an axis."""
+    a = triangles[i, axis]
+    b, c = a + triangles[i, 3 + axis], a + triangles[i, 6 + axis]
+    return min(a, min(b, c)), max(a, max(b, c))
+
+
+@inlined
 def hit_box(ray, boxes, i):
     """Interval of t of a ray in the i-th of boxes (lower, upper); empty where first > second (slab test)."""
     b = 6 * i

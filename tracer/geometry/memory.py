@@ -8,14 +8,14 @@ alive: a kernel may borrow what it was called with.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
+
+from tracer.simd.vectors import operation
 
 
 def aligned_rows(rows: int, columns: int) -> NDArray[np.float32]:
@@ -25,12 +25,7 @@ def aligned_rows(rows: int, columns: int) -> NDArray[np.float32]:
     return memory[start : start + 4 * rows * columns].view(np.float32).reshape(rows, columns)
 
 
-def _intrinsic(function: Callable) -> Any:
-    """numba's `intrinsic`, whose result is called without the typing context."""
-    return intrinsic(function)
-
-
-@_intrinsic
+@operation
 def data_pointer(typingctx, array):
     """Pointer to the first element of a contiguous array, read and written like a flat array."""
     if not isinstance(array, types.Array) or array.layout != "C":
@@ -56,7 +51,7 @@ def _without_counts(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     return value
 
 
-@_intrinsic
+@operation
 def borrowed(typingctx, data):
     """The same array, or tuple of arrays, tuples and numbers, with no reference counted."""
 
@@ -67,7 +62,7 @@ def borrowed(typingctx, data):
 
 
 def _local(dtype):
-    @_intrinsic
+    @operation
     def local(typingctx, count):
         """Memory for `count` (a literal number) elements that lasts until the calling kernel returns."""
         if not isinstance(count, types.IntegerLiteral):
@@ -84,14 +79,3 @@ def _local(dtype):
 
 local_float32 = _local(types.float32)
 local_int32 = _local(types.int32)
-
-
-@_intrinsic
-def float_bits(typingctx, number):
-    """The bits of a number, rounded to float32, as int32."""
-
-    def codegen(context, builder, signature, args):
-        rounded = context.cast(builder, args[0], signature.args[0], types.float32)
-        return builder.bitcast(rounded, ir.IntType(32))
-
-    return types.int32(number), codegen

@@ -12,10 +12,10 @@ from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.poses import Poses, inverses, products
 from tracer.runtime.kernels import kernel
-from tracer.scene.arrays import Float32, Float64, Int32
-from tracer.scene.bounds import extent
+from tracer.scene.arrays import BLOCK, Float32, Float64, Int32, Report
+from tracer.scene.bounds import extent, quadric_boxes
 from tracer.scene.deformation import deformed
-from tracer.scene.model import SPHERE, Scene, SceneObject, Triangles
+from tracer.scene.model import Scene, SceneObject, Triangles
 
 
 @kernel
@@ -158,13 +158,8 @@ class Primitives:
 
     def quadric_boxes(self, which: slice, maps: Float64) -> NDArray[np.float32]:
         """Boxes (n, 6) around quadrics in the space to which maps (n, 3, 4) take their canonical spaces."""
-        kinds, radii = self.quadrics[which, 12, None], np.abs(self.quadrics[which, 13:15].astype(np.float64))
-        sphere, axis, start = kinds == SPHERE, maps[:, :, 2], maps[:, :, 3]
-        across = maps[:, :, 0] ** 2 + maps[:, :, 1] ** 2
-        across = np.sqrt(np.where(sphere, across + axis**2, across))  # how far a unit sphere or circle reaches
-        first, second = (np.where(sphere, 1.0, radii[:, i, None]) * across for i in (0, 1))
-        end = np.where(sphere, start, start + axis)
-        lower, upper = np.minimum(start - first, end - second), np.maximum(start + first, end + second)
+        radii = np.abs(self.quadrics[which, 13:15].astype(np.float64))
+        lower, upper = quadric_boxes(self.quadrics[which, 12], radii, maps)
         slack = 2e-6 * np.maximum(np.abs(lower), np.abs(upper)).max(1, initial=0)[:, None]
         return np.concatenate([lower - slack, upper + slack], axis=1).astype(np.float32)
 
@@ -179,13 +174,6 @@ def edge_products(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
     """Cross products (t, 3) float32 of the two edges of triangles (t, 9), corner and edges: normals of any length."""
     a, b = triangles[:, 3:6].T, triangles[:, 6:9].T
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
-
-
-BLOCK = 1 << 18
-"""Triangles that are worked on at once."""
-
-Report = Callable[[float], None]
-"""Is given the part that is done, again and again, and may raise Cancelled."""
 
 
 def triangle_rows(corners: Float32) -> Float32:

@@ -7,7 +7,7 @@ without them and need not know which structure it calls.  A structure has two en
     any_hit(data, batch, first, last, counts)
 
 whose arguments are int64: data is the address of the structure's own description of the placed world, batch the address
-of a table of addresses (below), first and last - 1 are the first and the last ray to trace, and counts is the address
+of a `Batch`, first and last - 1 are the first and the last ray to trace, and counts is the address
 of two int64 to which traversal steps and intersection tests are added.
 """
 
@@ -22,16 +22,9 @@ from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Hits, RayPointers, Rays
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import address_of, call_entry, f32_at, load_i64, local_memory, store
+from tracer.simd import address_of, call_entry, f32_at, local_memory
+from tracer.simd.records import block_size, pack, reading, writing
 
-# The table of a batch, as offsets in bytes.  Rays: the addresses of origins and directions, (3, stride) float32, of
-# t_min and t_max, and the stride.  Results of closest hits: the addresses of t, primitive, u and v.  Any hits: the
-# address of the flags for what blocks each ray; which of STATIC_GEOMETRY and DYNAMIC_OBJECTS to ask; and the address of
-# the occluders' numbers, or 0 where nobody wants them.
-(
-    ORIGIN, DIRECTION, T_MIN, T_MAX, STRIDE, HIT_T, HIT_PRIMITIVE, HIT_U, HIT_V, BLOCKED, WHICH, OCCLUDER,
-) = range(0, 96, 8)  # fmt: skip
-BATCH = 96  # bytes
 STATIC_GEOMETRY, DYNAMIC_OBJECTS = 1, 2
 EVERYTHING = STATIC_GEOMETRY | DYNAMIC_OBJECTS
 STEPS, TESTS = 0, 1  # what a query adds to its counts
@@ -58,32 +51,53 @@ class Placed(NamedTuple):
     moving_box: NDArray[np.float32]
 
 
+class Batch(NamedTuple):
+    """What an entry traces, all of it addresses but for two numbers.
+
+    Rays: origins and directions, (3, stride) float32, t_min and t_max.  Results of closest hits: t, primitive, u and v.
+    Any hits: a byte for what blocks each ray, `which` of STATIC_GEOMETRY and DYNAMIC_OBJECTS is asked, and the
+    occluders' numbers, or 0 where nobody wants them."""
+
+    origin: int
+    direction: int
+    t_min: int
+    t_max: int
+    stride: int
+    t: int
+    primitive: int
+    u: int
+    v: int
+    blocked: int
+    which: int
+    occluders: int
+
+
+BATCH = block_size(Batch)
+read_batch, _write_batch = reading(Batch), writing(Batch)
+
+
 @inlined
-def _describe(batch, rays):
-    store(batch + ORIGIN, address_of(rays.origin))
-    store(batch + DIRECTION, address_of(rays.direction))
-    store(batch + T_MIN, address_of(rays.t_min))
-    store(batch + T_MAX, address_of(rays.t_max))
-    store(batch + STRIDE, np.int64(rays.origin.shape[1]))
+def _call(entry, data, rays, t, primitive, u, v, blocked, which, occluders, first, last, counts):
+    """Call an entry for rays and results that are addresses."""
+    batch = local_memory(BATCH)
+    origin, direction = address_of(rays.origin), address_of(rays.direction)
+    t_min, t_max, stride = address_of(rays.t_min), address_of(rays.t_max), rays.origin.shape[1]
+    _write_batch(batch, Batch(origin, direction, t_min, t_max, stride, t, primitive, u, v, blocked, which, occluders))
+    call_entry(entry, data, batch, first, last, address_of(counts))
 
 
 @inlined
 def closest_hits(world, rays, hits, first, last, counts):
     """Nearest hits of rays first to last - 1, into `hits`."""
-    batch = local_memory(BATCH)
-    _describe(batch, rays)
-    store(batch + HIT_T, address_of(hits.t))
-    store(batch + HIT_PRIMITIVE, address_of(hits.primitive))
-    store(batch + HIT_U, address_of(hits.u))
-    store(batch + HIT_V, address_of(hits.v))
-    call_entry(world.closest, world.data, batch, first, last, address_of(counts))
+    t, primitive, u, v = address_of(hits.t), address_of(hits.primitive), address_of(hits.u), address_of(hits.v)
+    _call(world.closest, world.data, rays, t, primitive, u, v, 0, 0, 0, first, last, counts)
 
 
 @inlined
 def any_hits(world, rays, which, blocked, first, last, counts):
     """What lies in the intervals of rays first to last - 1, into blocked (n,) uint8: STATIC_GEOMETRY, DYNAMIC_OBJECTS,
     or 0 for nothing.  Only `which` of the two is asked; for EVERYTHING, static geometry is asked first."""
-    _any_hits(world, rays, which, blocked, np.int64(0), first, last, counts)
+    _call(world.any_hit, world.data, rays, 0, 0, 0, 0, address_of(blocked), which, 0, first, last, counts)
 
 
 @inlined
@@ -92,28 +106,15 @@ def any_hits_by(world, rays, which, blocked, occluders, first, last, counts):
 
     This is the first that was found, not always the nearest.  In the kd-tree it depends on the ray alone; in the 8-wide
     trees also on the rays before it, from `first` on."""
-    _any_hits(world, rays, which, blocked, address_of(occluders), first, last, counts)
-
-
-@inlined
-def _any_hits(world, rays, which, blocked, occluders, first, last, counts):
-    batch = local_memory(BATCH)
-    _describe(batch, rays)
-    store(batch + BLOCKED, address_of(blocked))
-    store(batch + WHICH, np.int64(which))
-    store(batch + OCCLUDER, occluders)
-    call_entry(world.any_hit, world.data, batch, first, last, address_of(counts))
+    by = address_of(occluders)
+    _call(world.any_hit, world.data, rays, 0, 0, 0, 0, address_of(blocked), which, by, first, last, counts)
 
 
 @inlined
 def rays_of(batch):
-    """The rays of a described batch, to be read one at a time."""
+    """The rays of a batch, to be read one at a time."""
     return RayPointers(
-        f32_at(load_i64(batch + ORIGIN)),
-        f32_at(load_i64(batch + DIRECTION)),
-        f32_at(load_i64(batch + T_MIN)),
-        f32_at(load_i64(batch + T_MAX)),
-        load_i64(batch + STRIDE),
+        f32_at(batch.origin), f32_at(batch.direction), f32_at(batch.t_min), f32_at(batch.t_max), batch.stride
     )
 
 
@@ -124,11 +125,14 @@ def batch_of(
     which: int = EVERYTHING,
     occluders: NDArray[np.int32] | None = None,
 ) -> NDArray[np.int64]:
-    """The table of a batch, (12,) int64, for an entry that Python calls; the arrays must live as long as it does."""
-    arrays = [rays.origin, rays.direction, rays.t_min, rays.t_max]
-    results = [0, 0, 0, 0] if hits is None else [a.ctypes.data for a in (hits.t, hits.primitive, hits.u, hits.v)]
-    answer, names = (0 if a is None else a.ctypes.data for a in (blocked, occluders))
-    return np.array([*(a.ctypes.data for a in arrays), rays.origin.shape[1], *results, answer, which, names], np.int64)
+    """A batch as a block, (12,) int64, for an entry that Python calls; the arrays must live as long as it does."""
+
+    def at(array: NDArray | None) -> int:
+        return 0 if array is None else array.ctypes.data
+
+    found = (0, 0, 0, 0) if hits is None else (at(hits.t), at(hits.primitive), at(hits.u), at(hits.v))
+    asked = at(rays.origin), at(rays.direction), at(rays.t_min), at(rays.t_max), rays.origin.shape[1]
+    return pack(Batch(*asked, *found, at(blocked), which, at(occluders)))
 
 
 @subkernel

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.poses import Poses
-from tracer.geometry.primitives import WorldTriangles
+from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
 from tracer.geometry.tree_parts import TreeParts
 from tracer.runtime.kernels import Entry
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float32, Float64
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,21 @@ class BuiltPart:
     def share(self) -> float:
         """The part of the primitives that is built, 0 to 1."""
         return self.primitives / max(self.of, 1)
+
+
+def placed_by(
+    structure: Structure,
+    primitives: Primitives,
+    to_object: Float32,
+    data: NDArray[np.int64],
+    moves: bool,
+    moving_box: Float32,
+) -> Placed:
+    """What kernels get of a structure that has placed its primitives; whoever keeps it keeps `data` as well."""
+    closest, any_hit, of = structure.closest.address, structure.any_hit.address, primitives
+    return Placed(
+        of.triangles, of.quadrics, to_object, of.object_of, closest, any_hit, data.ctypes.data, moves, moving_box
+    )
 
 
 class Structure(Protocol):

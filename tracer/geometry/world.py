@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY, MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX
-from tracer.geometry.bvh8 import pieces
+from tracer.geometry.bvh8 import subtrees
 from tracer.geometry.bvh8.structure import Bvh8
 from tracer.geometry.kdtree.structure import KdTree
 from tracer.geometry.lazy_tree.structure import LazyKdTree
@@ -34,7 +34,7 @@ EACH = 1024  # rays, traced alone, after which somebody may cancel
 
 STRUCTURES: dict[str, Any] = {KD_TREE: KdTree, LAZY: LazyKdTree, BVH8: Bvh8}
 
-LARGE = pieces.LARGE
+LARGE = subtrees.LARGE
 """Primitives that never move: of more, the 8-wide tree may be built where rays arrive."""
 
 
@@ -176,9 +176,8 @@ class World:
         Hits
             t, primitive, u and v, (n,) each; t is inf and primitive -1 for a miss.
         """
-        n = len(rays.t_min)
-        hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
-        self._ask(self.structure.closest, batch_of(rays, hits), n, threads)
+        hits = _empty_hits(rays)
+        self._ask(self.structure.closest, batch_of(rays, hits), len(rays.t_min), threads)
         return hits
 
     def any_hits(self, rays: Rays, threads: int = 0) -> NDArray[np.bool_]:
@@ -236,9 +235,8 @@ class World:
         tuple of Hits and (n, 2) int64
             The hits, and the traversal steps and intersection tests of each ray, traced alone.
         """
-        n = len(rays.t_min)
-        hits = Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))
-        return hits, self._ask_each(self.structure.closest, batch_of(rays, hits), n, None)
+        hits = _empty_hits(rays)
+        return hits, self._ask_each(self.structure.closest, batch_of(rays, hits), len(rays.t_min), None)
 
     def occluders_each(
         self, rays: Rays, which: int = EVERYTHING, cancelled: Callable[[], bool] | None = None
@@ -306,3 +304,8 @@ class World:
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""
         return self.structure.bounds()
+
+
+def _empty_hits(rays: Rays) -> Hits:
+    n = len(rays.t_min)
+    return Hits(np.empty(n, np.float32), np.empty(n, np.int32), np.empty(n, np.float32), np.empty(n, np.float32))

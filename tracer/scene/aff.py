@@ -18,6 +18,7 @@ from tracer.scene import aff_statements, rotations
 from tracer.scene.aff_statements import FoundLight, dimmed, read_lamp, read_light, settled
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted, reason
 from tracer.scene.animation import Animation, Chain, TrackSet
+from tracer.scene.arrays import vector
 from tracer.scene.assembly import Geometry
 from tracer.scene.bounds import bounds
 from tracer.scene.files import SceneFiles
@@ -120,7 +121,8 @@ class _Reader:
         opened: list[tuple[Chain, int]] = []  # what to return to at each '}', and where its '{' stands
         at = Cursor(file)
         while not at.at_end:
-            self.report(file, done if has_includes else low + (high - low) * at.position / len(file.words))
+            within = done if has_includes else low + (high - low) * at.position / len(file.words)
+            self.report(f"Reading {file.path.name}", min(within, high))  # sums of shares may be a little more
             word = at.word("a statement")
             if word == b"}":
                 if not opened:
@@ -146,15 +148,10 @@ class _Reader:
             raise at.error("'{' that is never closed; add '}'", opened[-1][1])
         self.including.pop()
 
-    def report(self, file: AffFile, fraction: float) -> None:
+    def report(self, what: str, fraction: float) -> None:
         if self.progress is not None and (now := perf_counter()) - self.reported > SECONDS_BETWEEN_REPORTS:
             self.reported = now
-            self.progress(f"Reading {file.path.name}", min(fraction, 1.0))
-
-    def report_assembly(self) -> None:
-        if self.progress is not None and (now := perf_counter()) - self.reported > SECONDS_BETWEEN_REPORTS:
-            self.reported = now
-            self.progress(f"Reading {self.path.name}: putting it together", 1.0)
+            self.progress(what, min(fraction, 1.0))
 
     def include(self, at: Cursor, low: float, high: float) -> None:
         level = at.count("detail levels", least=-(10**9))
@@ -211,9 +208,8 @@ class _Reader:
         angle = given.get(b"angle", [45.0])[0]
         if not 0.0 < angle < 180.0:
             raise at.error(f"an angle of {angle:g} degrees; give one between 0 and 180", start)
-        x, y, z = given[b"from"]
-        up = given.get(b"up", [0.0, 1.0, 0.0])
-        self.camera = Camera((x, y, z), tuple(direction.tolist()), (up[0], up[1], up[2]), angle)
+        up = vector(given.get(b"up", [0.0, 1.0, 0.0]))
+        self.camera = Camera(vector(given[b"from"]), vector(direction), up, angle)
 
     def read_light(self, at: Cursor, name: str | None = None) -> None:
         self.lights.append(read_light(at, self.chain, len(self.lights), name))
@@ -287,7 +283,8 @@ class _Reader:
     def scene(self) -> Scene:
         found = dimmed(self.lights) if self.path.suffix.lower() == ".nff" else self.lights
         lights, left_out = settled(found, self.tracks)
-        objects, remarks = self.geometry.objects(self.tracks, self.report_assembly)
+        assembling = f"Reading {self.path.name}: putting it together"
+        objects, remarks = self.geometry.objects(self.tracks, lambda: self.report(assembling, 1.0))
         animation = Animation(self.tracks)
         camera = self.camera
         if camera is None:

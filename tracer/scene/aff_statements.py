@@ -1,7 +1,21 @@
-"""The statements of AFF that carry geometry or tracks, read into arrays in the file's own space.
+"""The statements of AFF that carry geometry, tracks or lights, read into arrays in the file's own space.
 
-Nothing here knows of transforms, materials or what came before: a block means the same wherever
+Of geometry and tracks nothing here knows of transforms, materials or what came before: a block means the same wherever
 it is included, which is why meshes can be remembered by their place in the file.
+
+Lights are AFF's own points, `l` and `la`, and `lamp`, a statement of ours for lights of some size.
+
+    lamp point     at x y z
+    lamp sphere    at x y z  radius r
+    lamp rectangle at x y z  edges x y z  x y z
+    lamp dome      at x y z  radius r  [up x y z]
+
+each with [samples n] [color r g b] [falloff none | inverse-square] [name track], in any order.  Words introduce the
+values as they do in `v`.  BART's own reader takes the first letters for those of `la` and stops at the word after them,
+which is no number: a file with lamps is refused there, and not shown with other lights.
+
+A lamp is placed, turned and scaled by the static transforms around it.  As a light of `la`, it moves by the translation
+track of its name, but does not turn: what asks for more is warned of.
 """
 
 from __future__ import annotations
@@ -15,7 +29,7 @@ import numpy as np
 
 from tracer.scene.aff_tokens import AffFile, Cursor, quoted
 from tracer.scene.animation import Chain, Keys, TrackSet
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float64, Vector, vector
 from tracer.scene.assembly import resolve
 from tracer.scene.lights import DEFAULT_SAMPLES, FALLOFFS, KINDS, MAX_SAMPLES, Light
 from tracer.scene.limits import LARGEST
@@ -217,11 +231,10 @@ def read_lamp(at: Cursor, chain: Chain, number: int) -> FoundLight:
         if not (linear @ edges[0]).any():
             raise at.error("'up' of a dome has no length; give the direction of its top", place.index)
     name = given.get(b"name")
-    r, g, b = given.get(b"color", np.ones(3)).tolist()
     light = Light(
         name or f"light {number}",
         _moved(matrix, given[b"at"]),
-        (r, g, b),
+        vector(given.get(b"color", np.ones(3))),
         name,
         kind,
         radius=float(given.get(b"radius", np.zeros(1))[0]) * _scale(linear),
@@ -307,11 +320,10 @@ def _static(chain: Chain) -> Float64:
     return resolve(chain, ())[1]
 
 
-def _moved(matrix: Float64, vector: Float64) -> tuple[float, float, float]:
+def _moved(matrix: Float64, place: Float64) -> Vector:
     """A point under a matrix (4, 4), or a direction under one (3, 3)."""
-    moved = matrix[:3, :3] @ vector
-    x, y, z = (moved + matrix[:3, 3] if len(matrix) == 4 else moved).tolist()
-    return x, y, z
+    moved = matrix[:3, :3] @ place
+    return vector(moved + matrix[:3, 3] if len(matrix) == 4 else moved)
 
 
 def _scale(linear: Float64) -> float:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float64, vector
 from tracer.scene.limits import LARGEST
 from tracer.scene.model import SceneError
 
@@ -136,8 +136,7 @@ class Cursor:
         return float(self.numbers(1, what)[0])
 
     def triple(self, what: str) -> tuple[float, float, float]:
-        x, y, z = self.numbers(3, what).tolist()
-        return x, y, z
+        return vector(self.numbers(3, what))
 
     def indices(self, count: int, what: str) -> NDArray[np.int64]:
         """(count,) int64."""

@@ -1,13 +1,14 @@
-"""How things move: Kochanek-Bartels tracks, evaluated all together.
+"""How things move: Kochanek-Bartels tracks, and the chains of transforms of all objects, evaluated all together.
 
-A frame needs every track of a scene at one time, and a scene may have hundreds, so the tracks
-are laid side by side: one array holds segment i of every track, and a handful of array
-operations yields all translations, scales and rotations of the moment.  The result is kept for
-the time asked last.  (A loop over tracks took longer than placing the objects.)
+A frame needs every track of a scene at one time, and a scene may have hundreds, so tracks are laid side by side: one
+array holds segment i of every track, and a handful of array operations yields all translations, scales and rotations of
+the moment.  The result is kept for the time asked last.  (A loop over tracks took longer than placing the objects.)
 
-Of n keys only 1 to n - 2 are passed through; the first and the last shape the tangents, and time
-is clamped between.  Files hold duplicate and even backward key times, so a segment is found by
-linear scan: the first whose end is later than the time.
+Of n keys only 1 to n - 2 are passed through; the first and the last shape the tangents, and time is clamped between.
+Files hold duplicate and even backward key times, so a segment is found by linear scan: the first whose end is later.
+
+The chains of objects that move together begin with the same transforms.  So they are a tree (`Chains`): every node is
+the product of its parent's matrix and one more transform, and all products at one depth are one array operation.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene import rotations
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float64, vector
 from tracer.scene.camera import Camera
 from tracer.scene.limits import LARGEST
 
@@ -241,15 +242,13 @@ class Animation:
             return base
         position, direction, up = base.position, base.direction, base.up
         if tracks.translation is not None:
-            x, y, z = self.translation("camera", time)
-            position = (float(x), float(y), float(z))
+            position = vector(self.translation("camera", time))
         if tracks.rotation is not None:
             with np.errstate(all="ignore"):
                 segments = _Segments.of([tracks.rotation], [_rotation_knots(tracks.rotation)])
                 rotation = _squad(*segments.find(time))[0]
             rotation = rotation if np.isfinite(rotation).all() else np.eye(3)
-            direction = tuple((-rotation[:, 2]).tolist())
-            up = tuple(rotation[:, 1].tolist())
+            direction, up = vector(-rotation[:, 2]), vector(rotation[:, 1])
         return Camera(position, direction, up, base.angle)
 
 

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.animation import Chain
-from tracer.scene.arrays import Float64
-from tracer.scene.bounds import quadric_box
+from tracer.scene.arrays import BLOCK, Float64
+from tracer.scene.bounds import quadric_boxes
 from tracer.scene.deformation import Deformation
 from tracer.scene.limits import LARGEST, SMALLEST
 from tracer.scene.model import CONE, Quadrics, SceneObject, Triangles, empty_quadrics, empty_triangles
 from tracer.scene.normals import unit_normals
-from tracer.scene.pieces import BLOCK, IndexedMesh, Mesh, Morph, Piece, Place, Quadric
+from tracer.scene.pieces import IndexedMesh, Mesh, Morph, Piece, Place, Quadric
 
 PIECES_BETWEEN_REPORTS = 4096
 
@@ -260,6 +260,12 @@ def _uvs(mesh: Mesh, matrix: Float64) -> NDArray[np.float32]:
     return np.nan_to_num(uvs.astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
 
 
+def _reach(quadric: Quadric, placed: Float64) -> float:
+    """The largest coordinate of a quadric under a matrix (4, 4)."""
+    kind, radii = np.array([quadric.kind], np.int32), np.array([quadric.radii])
+    return float(np.abs(quadric_boxes(kind, radii, placed[None, :3])).max())
+
+
 def _invertible(linear: Float64) -> bool:
     """Whether rays can be brought to the space that a matrix (3, 3) maps from."""
     try:
@@ -277,10 +283,9 @@ def _quadrics(
         what = "a cone" if piece.shape.kind == CONE else "a sphere"
         if not np.isfinite(np.append(placed, radii)).all():
             remarks.add(piece.shape.place, 0, f"{what} with a number that is not finite is dropped; correct it")
-        elif not np.abs([*quadric_box(piece.shape.kind, placed, np.array(radii))]).max() <= LARGEST:
-            remarks.add(
-                piece.shape.place, 0, f"{what} beyond {LARGEST:g} is dropped; make it smaller or bring it nearer"
-            )
+        elif not _reach(piece.shape, placed) <= LARGEST:
+            too_large = f"{what} beyond {LARGEST:g} is dropped; make it smaller or bring it nearer"
+            remarks.add(piece.shape.place, 0, too_large)
         elif max(radii) == 0 or not _invertible(placed[:3, :3]):
             remarks.add(piece.shape.place, 0, f"{what} without extent is dropped; give it a radius and a length")
         else:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,20 +16,18 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.arrays import Float32, Float64, Int32, Report
 from tracer.scene.distinct_points import DistinctPoints
 from tracer.scene.files import open_regular
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
-from tracer.scene.ply import CORNERS, LONGEST_HEAD, Element, elements_of
+from tracer.scene.ply import CORNERS, LONGEST_HEAD, Element, read_head
 
 ROWS = 1 << 18
 """Triangles, or vertices, that are read at once."""
 
 HEAD = 1024
 """Bytes of a file by which others may tell who wrote it."""
-
-Report = Callable[[float], None]
 
 _STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 _FOR_TRIMESH = {"red", "green", "blue", "texture_u", "texture_v", "u", "v", "s", "t"}
@@ -118,19 +115,17 @@ class _PlyLayout:
 
 def _ply_layout(head: bytes) -> _PlyLayout | None:
     """What the head of a PLY file says; None where it has more than plain triangles.  Raises ValueError."""
-    begin = head.find(b"\n", head.find(b"end_header")) + 1
-    lines = head[:begin].decode("latin-1").splitlines()
-    if len(lines) < 3 or lines[0].strip() != "ply" or "format binary" not in lines[1] or "end_header" not in lines[-1]:
+    found = read_head(head, most=1 << 62)
+    if found is None or any("TextureFile" in line for line in found.others):
         return None
-    elements, others = elements_of(lines[:-1], ">" if "big" in lines[1] else "<", most=1 << 62)
-    if any("TextureFile" in line for line in others) or [one.name for one in elements[:2]] != ["vertex", "face"]:
+    if [one.name for one in found.elements[:2]] != ["vertex", "face"]:
         return None
-    vertex, face = elements[:2]
+    vertex, face = found.elements[:2]
     row, coordinates, normals = _vertex_row(vertex)
     triangle = _triangle_row(face)
     if row is None or triangle is None or not vertex.number or not face.number:
         return None
-    return _PlyLayout(begin, vertex.number, face.number, row, triangle, coordinates, normals)
+    return _PlyLayout(found.begin, vertex.number, face.number, row, triangle, coordinates, normals)
 
 
 def _read_ply(path: Path, file: BinaryIO, report: Report) -> BinaryMesh | None:

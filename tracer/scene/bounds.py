@@ -7,12 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from tracer.scene.animation import Animation
-from tracer.scene.arrays import Float32, Float64
+from tracer.scene.arrays import BLOCK, Float32, Float64, Int32
 from tracer.scene.deformation import deformed
 from tracer.scene.limits import SMALLEST
 from tracer.scene.model import CONE, SceneObject
 
-_BLOCK = 1 << 18  # triangles that are moved at once
 _ROW = 64  # points
 
 
@@ -27,16 +26,24 @@ def bounds(objects: Sequence[SceneObject], animation: Animation, time: float) ->
             continue
         corners = o.triangles.corners if o.deformation is None else deformed(o.deformation, time)[0]
         at_rest = np.array_equal(matrix, np.eye(4))
-        for start in range(0, len(corners), _BLOCK):
-            points: Float32 | Float64 = corners[start : start + _BLOCK].reshape(-1, 3)
+        for start in range(0, len(corners), BLOCK):
+            points: Float32 | Float64 = corners[start : start + BLOCK].reshape(-1, 3)
             if not at_rest:
                 points = points @ matrix[:3, :3].T + matrix[:3, 3]
             boxes.append(extent(points))
-        for kind, placed, radii in zip(o.quadrics.kind, o.quadrics.to_object, o.quadrics.radii, strict=True):
-            boxes.append(quadric_box(int(kind), matrix @ np.vstack([placed, (0, 0, 0, 1)]), radii))
+        if len(o.quadrics):
+            maps = np.stack([matrix @ np.vstack([placed, (0, 0, 0, 1)]) for placed in o.quadrics.to_object])
+            least, greatest = quadric_boxes(o.quadrics.kind, o.quadrics.radii, maps[:, :3])
+            boxes.append((least.min(axis=0), greatest.max(axis=0)))
     if not boxes:
         return None
     return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)]).astype(np.float64)
+
+
+def ball_of(box: Float64 | None) -> tuple[Float64, float]:
+    """The centre (3,) of a box (2, 3), and half its diagonal; 1 for that of a single point.  None is a box around 0."""
+    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
+    return (low + high) / 2, float(np.linalg.norm(high - low)) / 2 or 1.0
 
 
 def extent(points: Float32 | Float64) -> tuple[Float32 | Float64, Float32 | Float64]:
@@ -49,12 +56,12 @@ def extent(points: Float32 | Float64) -> tuple[Float32 | Float64, Float32 | Floa
     return few.min(axis=0), few.max(axis=0)
 
 
-def quadric_box(kind: int, placed: Float64, radii: Float64) -> tuple[Float64, Float64]:
-    """Least and greatest corner, (3,) each, of a sphere or cone under a map (4, 4) from its canonical space."""
-    linear, centre = placed[:3, :3], placed[:3, 3]
-    if kind != CONE:
-        reach = np.linalg.norm(linear, axis=1)
-        return centre - reach, centre + reach
-    across = np.linalg.norm(linear[:, :2], axis=1)  # how far a unit circle reaches along each axis
-    ends = [(centre, across * radii[0]), (centre + linear[:, 2], across * radii[1])]
-    return np.min([c - r for c, r in ends], axis=0), np.max([c + r for c, r in ends], axis=0)
+def quadric_boxes(kinds: Int32 | Float32, radii: Float64 | Float32, maps: Float64) -> tuple[Float64, Float64]:
+    """Least and greatest corners, (n, 3) each, of spheres and cones, (n,) and (n, 2), under maps (n, 3, 4) from their
+    canonical space."""
+    sphere, axis, start = (kinds != CONE)[:, None], maps[:, :, 2], maps[:, :, 3]
+    across = maps[:, :, 0] ** 2 + maps[:, :, 1] ** 2
+    across = np.sqrt(np.where(sphere, across + axis**2, across))  # how far a unit sphere or circle reaches
+    first, second = (np.where(sphere, 1.0, radii[:, i, None]) * across for i in (0, 1))
+    end = np.where(sphere, start, start + axis)
+    return np.minimum(start - first, end - second), np.maximum(start + first, end + second)

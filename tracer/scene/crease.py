@@ -8,22 +8,17 @@ face is cut into triangles nor on whether triangles share their vertices in the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.runtime.kernels import kernel
-from tracer.scene.arrays import Float32, Float64, Int32
+from tracer.scene.arrays import BLOCK, Float32, Float64, Int32, Report
 from tracer.scene.distinct_points import DistinctPoints
-
-BLOCK = 1 << 18
-"""Faces that are worked on at once."""
 
 MOST_AROUND = 64
 """Other faces that are asked at a vertex: the hub of a fan of thousands is asked for those nearest in the file."""
-
-Report = Callable[[float], None]
 
 
 def creased_normals(

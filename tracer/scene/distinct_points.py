@@ -63,7 +63,8 @@ class DistinctPoints:
 
     def numbered(self, points: Float32 | Float64) -> Int32:
         """(n,) the numbers of the places that points (n, 3) lie at, as they are rounded to float32."""
-        own = np.ascontiguousarray(points, np.float32) + np.float32(0)  # -0 becomes 0
+        with np.errstate(all="ignore"):  # what float32 cannot hold is found, and named, later
+            own = np.ascontiguousarray(points, np.float32) + np.float32(0)  # -0 becomes 0
         numbers = np.empty(len(own), np.int32)
         done = self._number(own.view(np.uint32), 0, numbers)
         while done < len(own):

@@ -3,7 +3,8 @@
 A lamp of 64 samples is 64 point lights that share its colour.  Its samples lie at the same places of the lamp in every
 frame and for every method, so that the picture in which all shadow rays are traced is the truth, bit for bit.  They are
 the first points of a Sobol sequence in two dimensions, shifted for each lamp (Cranley and Patterson 1976): 4, 16 or 64
-of them are spread evenly over the lamp, and the first of 64 are those of 4.
+of them are spread evenly over the lamp, and the first of 64 are those of 4.  Shading reads the lights of a frame as
+`Lamps`: each has one sample or more.
 """
 
 from __future__ import annotations
@@ -17,9 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.arrays import Float64
-
-Vector = tuple[float, float, float]
+from tracer.scene.arrays import Float64, Vector
 
 KINDS = ("point", "sphere", "rectangle", "dome")
 FALLOFFS = ("none", "inverse square")

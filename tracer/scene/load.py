@@ -23,10 +23,7 @@ SCENE_EXTENSIONS = (*AFF_EXTENSIONS, *MESH_EXTENSIONS)
 
 
 def load_scene(
-    path: str | Path,
-    progress: Progress | None = None,
-    folders: Iterable[Path] = (),
-    meshes: MeshOptions = AS_IN_FILE,
+    path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = (), meshes: MeshOptions = AS_IN_FILE
 ) -> Scene:
     """Read a scene from a file: AFF, NFF, OBJ, PLY, STL, glTF or GLB.
 
@@ -86,15 +83,14 @@ def check_scene_file(path: Path) -> None:
 
 
 def load_visible_scene(
-    path: str | Path,
-    progress: Progress | None = None,
-    folders: Iterable[Path] = (),
-    meshes: MeshOptions = AS_IN_FILE,
+    path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = (), meshes: MeshOptions = AS_IN_FILE
 ) -> Scene:
     """As `load_scene`, but a scene with nothing to see in it, or too large to be shown, is a SceneError too."""
     scene = load_scene(path, progress, folders, meshes)
     if scene.primitive_count == 0:
-        raise SceneError(f"{path}: nothing to see in it: no triangles, spheres or cones")
+        dropped = next((warning for warning in scene.warnings if " is dropped; " in warning), None)
+        why = f"{dropped}; nothing else is to be seen" if dropped is not None else ""
+        raise SceneError(why or f"{path}: nothing to see in it: no triangles, spheres or cones")
     check_showing(Path(path), scene.primitive_count)
     return scene
 

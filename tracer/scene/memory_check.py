@@ -16,6 +16,7 @@ from typing import Any
 from tracer.scene.binary_meshes import is_plain
 from tracer.scene.limits import MOST_PRIMITIVES
 from tracer.scene.model import SceneError
+from tracer.scene.ply import LONGEST_HEAD, read_head
 
 ANYHOW = "SHADOWCULL_BEYOND_MEMORY"
 """A variable of the environment: set, no scene is refused for the memory that it needs."""
@@ -28,12 +29,7 @@ READING_TEXT = 25.0
 SHOWING = 600.0
 """Bytes for each triangle that its tree, modes, certificates and first pictures take beside the scene."""
 _SMALL = 256e6  # bytes that nobody needs to ask for
-_HEAD = 1 << 16  # bytes that the head of a PLY file may take
 _LONGEST_JSON = 1 << 28
-_SIZES = {
-    "char": 1, "int8": 1, "uchar": 1, "uint8": 1, "short": 2, "int16": 2, "ushort": 2, "uint16": 2, "int": 4,
-    "int32": 4, "uint": 4, "uint32": 4, "float": 4, "float32": 4, "double": 8, "float64": 8,
-}  # fmt: skip
 
 
 def check_reading(path: Path, whole: bool = False) -> None:
@@ -142,28 +138,15 @@ def _of_stl(path: Path) -> int | None:
 
 def _of_ply(path: Path) -> int | None:
     with path.open("rb") as file:
-        head = file.read(_HEAD)
-    end = head.index(b"end_header")
-    lines = [line.split() for line in head[:end].decode("latin-1").splitlines()]
-    if ["format", "ascii", "1.0"] in lines:
-        return None
-    numbers, flat, lists = {}, {}, set()  # elements, their bytes without lists, and which have lists
-    element = ""
-    for words in lines:
-        if words[:1] == ["element"]:
-            element = words[1]
-            numbers[element], flat[element] = int(words[2]), 0
-        elif words[:2] == ["property", "list"]:
-            lists.add(element)
-        elif words[:1] == ["property"]:
-            flat[element] += _SIZES[words[1]]
-    if lists - {"face"}:
-        return None  # strips
-    left = path.stat().st_size - end - sum(numbers[name] * flat[name] for name in numbers)
-    faces = numbers.get("face", 0)
-    corners = round((left / faces - 1) / 4) if faces else 0  # in the mean
-    found = faces * max(corners - 2, 1)
-    return found if 0 <= found <= MOST_PRIMITIVES else None
+        head = file.read(LONGEST_HEAD)
+    found = read_head(head, most=1 << 62)
+    if found is None or any(one.has_lists and one.name != "face" for one in found.elements):
+        return None  # a text, or strips
+    flat = sum(e.number * sum(p.kind.itemsize for p in e.properties if p.count is None) for e in found.elements)
+    faces = next((one.number for one in found.elements if one.name == "face"), 0)
+    corners = round(((path.stat().st_size - found.begin - flat) / faces - 1) / 4) if faces else 0  # in the mean
+    triangles = faces * max(corners - 2, 1)
+    return triangles if 0 <= triangles <= MOST_PRIMITIVES else None
 
 
 def _of_gltf(path: Path) -> int | None:

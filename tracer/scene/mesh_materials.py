@@ -13,7 +13,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
+from tracer.scene.arrays import vector
 from tracer.scene.model import Material, SceneError, Texture
 from tracer.scene.textures import check_pixels, texture_of
 
@@ -72,6 +74,9 @@ class MaterialTable:
     def _texture(self, image: Any, where: str) -> int:
         if image is None:
             return -1
+        if not isinstance(image, Image.Image):
+            self.warnings.append(f"{where}: its texture is no image of the file; the surface keeps its material colour")
+            return -1
         if id(image) not in self._textures:
             name = Path(str(image.info.get("file_path", ""))).name or f"texture {len(self.textures)}"
             self._images.append(image)
@@ -115,7 +120,7 @@ def _physical(given: Any) -> Material:
     specular = colour * mirror + 0.04 * (1.0 - metal) * (1.0 - rough)
     clear = 1.0 - float(np.clip(base[3], 0.0, 1.0)) if given.alphaMode == "BLEND" else 0.0
     exponent = float(np.clip(2.0 / max(rough, 0.03) ** 4 - 2.0, 1.0, 1000.0))
-    return Material(str(given.name), _triple(AMBIENT * diffuse), _triple(diffuse), _triple(specular), exponent, clear)
+    return Material(str(given.name), vector(AMBIENT * diffuse), vector(diffuse), vector(specular), exponent, clear)
 
 
 def _simple(given: Any) -> Material:
@@ -133,9 +138,9 @@ def _simple(given: Any) -> Material:
     name = str(getattr(given, "name", "material"))
     return Material(
         name,
-        _triple(AMBIENT * diffuse),
-        _triple(diffuse),
-        _triple(specular),
+        vector(AMBIENT * diffuse),
+        vector(diffuse),
+        vector(specular),
         exponent,
         float(np.clip(clear, 0.0, 1.0)),
         ior if ior > 0.0 else 1.0,
@@ -143,7 +148,7 @@ def _simple(given: Any) -> Material:
 
 
 def _plain(name: str, colour: NDArray[np.float64]) -> Material:
-    return Material(name, _triple(AMBIENT * colour), _triple(colour))
+    return Material(name, vector(AMBIENT * colour), vector(colour))
 
 
 def _first(values: dict[str, Any], key: str, otherwise: float) -> float:
@@ -159,8 +164,3 @@ def _first(values: dict[str, Any], key: str, otherwise: float) -> float:
 def _displayed(linear: NDArray[np.float64]) -> NDArray[np.float64]:
     """The sRGB transfer function: what a display shows for linear light."""
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-
-
-def _triple(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    r, g, b = np.asarray(values, np.float64).tolist()
-    return r, g, b

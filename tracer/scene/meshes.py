@@ -13,7 +13,6 @@ import warnings
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 from io import BytesIO
 from pathlib import Path
 from threading import get_ident
@@ -22,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from tracer.scene.animation import Animation
-from tracer.scene.arrays import Float32, Float64
+from tracer.scene.arrays import Float32, Float64, Report, vector
 from tracer.scene.assembly import Geometry
 from tracer.scene.binary_meshes import BinaryMesh, read_binary
 from tracer.scene.bounds import bounds
@@ -65,10 +64,7 @@ class _MeshPlace:
 
 
 def load_mesh(
-    path: str | Path,
-    progress: Progress | None = None,
-    folders: Iterable[Path] = (),
-    options: MeshOptions = AS_IN_FILE,
+    path: str | Path, progress: Progress | None = None, folders: Iterable[Path] = (), options: MeshOptions = AS_IN_FILE
 ) -> Scene:
     """A mesh file as a static scene; raises SceneError in one line that names the file.
 
@@ -77,19 +73,23 @@ def load_mesh(
     report = progress or (lambda what, fraction: None)
     report(f"Reading {path.name}", 0.0)
     table, geometry = MaterialTable(path), Geometry()
-    binary = _read_binary(path, lambda done: report(f"Reading {path.name}", 0.5 * done))
+    try:
+        binary = read_binary(path, _part(report, f"Reading {path.name}", 0.0, 0.5))
+        if binary is not None:
+            model, own_camera, alone, head, notes = None, None, options.studio, binary.head, list[str]()
+        else:
+            check_reading(path, whole=True)  # its first face may have looked as if parts would do
+            model, notes, head = _read(path, SceneFiles(path, folders))
+            own_camera = _own_camera(model)
+            alone = options.studio and own_camera is None and not has_lights(model)
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror or error}; check it") from None
+    crease = _crease(options, alone, path)
     if binary is not None:
-        model, own_camera, alone, head = None, None, options.studio, binary.head
-        notes: list[str] = []
-        smoothing = partial(_tell, report, f"Smoothing {path.name}", 0.5, 0.85)
-        geometry.meshes.append(_piece_of_binary(binary, path, table, _crease(options, alone, path), smoothing))
+        geometry.meshes.append(_piece_of_binary(binary, path, table, crease, report))
         del binary
     else:
-        check_reading(path, whole=True)  # its first face may have looked as if parts would do
-        model, notes, head = _read(path, SceneFiles(path, folders))
-        own_camera = _own_camera(model)
-        alone = options.studio and own_camera is None and not has_lights(model)
-        notes += _add_pieces(model, path, table, geometry, _crease(options, alone, path), report)
+        notes += _add_pieces(model, path, table, geometry, crease, report)
     objects, remarks = geometry.objects((), lambda: report(f"Putting {path.name} together", 0.9))
     if not len(objects[0].triangles):
         remarks.append(f"{path}: no triangle; only the background is seen")
@@ -115,8 +115,9 @@ def load_mesh(
     return _in_studio(scene, options.up, head, lambda: report(f"Setting {path.name} in a studio", 0.95))
 
 
-def _tell(report: Progress, what: str, begin: float, end: float, done: float) -> None:
-    report(what, begin + (end - begin) * done)
+def _part(report: Progress, what: str, begin: float, end: float) -> Report:
+    """What is told of a part of the work, from 0 to 1, as one of all of it."""
+    return lambda done: report(what, begin + (end - begin) * done)
 
 
 def _add_pieces(
@@ -133,29 +134,19 @@ def _add_pieces(
         if not hasattr(mesh, "faces") or not len(mesh.faces):
             skipped.append(f"{path}: {name!a} has no triangles; it is left out")
             continue
-        smoothing = partial(_tell, report, f"Smoothing {path.name}", begin, end)
+        smoothing = _part(report, f"Smoothing {path.name}", begin, end)
         for shape, material, texture in _shapes(mesh, _MeshPlace(path, name), table, crease, smoothing):
             geometry.meshes.append(Piece(shape, (np.asarray(matrix, np.float64),), material, texture))
     return skipped
 
 
-def _read_binary(path: Path, report: Callable[[float], None]) -> BinaryMesh | None:
-    try:
-        return read_binary(path, report)
-    except OSError as error:
-        raise _unreadable(path, error) from None
-
-
-def _unreadable(path: Path, error: OSError) -> SceneError:
-    return SceneError(f"{path}: cannot be read: {error.strerror or error}; check it")
-
-
 def _piece_of_binary(
-    mesh: BinaryMesh, path: Path, table: MaterialTable, crease: float, report: Callable[[float], None]
+    mesh: BinaryMesh, path: Path, table: MaterialTable, crease: float, report: Progress
 ) -> Piece[Mesh | IndexedMesh]:
     normals = mesh.normals
     if normals is None and crease > 0:
-        normals = creased_normals(mesh.vertices, mesh.faces, crease, report, mesh.place)
+        smoothing = _part(report, f"Smoothing {path.name}", 0.5, 0.85)
+        normals = creased_normals(mesh.vertices, mesh.faces, crease, smoothing, mesh.place)
     shape = IndexedMesh(mesh.vertices, mesh.faces, _MeshPlace(path, ONLY_MESH), normals)
     return Piece(shape, (), table.plain())
 
@@ -223,10 +214,7 @@ def _read(path: Path, files: SceneFiles) -> tuple[Any, list[str], bytes]:
 
     troubles: list[str] = []
     kind = path.suffix[1:]
-    try:
-        data = read_regular(path)
-    except OSError as error:
-        raise _unreadable(path, error) from None
+    data = read_regular(path)
     try:
         with quiet(), only_known_images():
             readable = with_even_lists(data) if kind.lower() == "ply" else data
@@ -291,7 +279,7 @@ def _check(mesh: Any, path: Path) -> None:
 
 
 def _shapes(
-    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float, report: Callable[[float], None]
+    mesh: Any, place: _MeshPlace, table: MaterialTable, crease: float, report: Report
 ) -> Iterator[tuple[IndexedMesh, int, int]]:
     """Parts of one material each, with its number and that of the texture; `crease` is the angle in degrees up to which
     edges are rounded where there are no normals."""
@@ -331,4 +319,4 @@ def _own_camera(model: Any) -> Camera | None:
     direction, up, angle = -placed[:3, 2], placed[:3, 1], float(model.camera.fov[1])
     if not ((np.abs(placed) <= LARGEST).all() and direction.any() and 0.0 < angle < 180.0):
         return None
-    return Camera(tuple(placed[:3, 3].tolist()), tuple(direction.tolist()), tuple(up.tolist()), angle)
+    return Camera(vector(placed[:3, 3]), vector(direction), vector(up), angle)

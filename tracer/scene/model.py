@@ -184,25 +184,22 @@ class Scene:
         offsets = self.triangle_offsets if primitive < self.triangle_count else self.quadric_offsets
         return int(np.searchsorted(offsets, primitive, side="right")) - 1
 
+    def place_of(self, primitive: int) -> tuple[SceneObject, int]:
+        """The object that holds a primitive, and its place there: the triangles, then the quadrics."""
+        o = self.object_of(primitive)
+        if primitive < self.triangle_count:
+            return self.objects[o], primitive - int(self.triangle_offsets[o])
+        return self.objects[o], len(self.objects[o].triangles) + primitive - int(self.quadric_offsets[o])
+
     def name_of(self, primitive: int) -> str:
         """The name of the object that holds a primitive; of static geometry, the name of the part."""
-        o = self.object_of(primitive)
-        held = self.objects[o]
-        if held.part_of is None:
-            return held.name
-        if primitive < self.triangle_count:
-            index = primitive - self.triangle_offsets[o]
-        else:
-            index = len(held.triangles) + primitive - self.quadric_offsets[o]
-        return held.parts[int(held.part_of[index])]
+        held, place = self.place_of(primitive)
+        return held.name if held.part_of is None else held.parts[int(held.part_of[place])]
 
     def material_of(self, primitive: int) -> Material:
-        o = self.object_of(primitive)
-        if primitive < self.triangle_count:
-            index = self.objects[o].triangles.material[primitive - self.triangle_offsets[o]]
-        else:
-            index = self.objects[o].quadrics.material[primitive - self.quadric_offsets[o]]
-        return self.materials[int(index)]
+        held, place = self.place_of(primitive)
+        quadric = place - len(held.triangles)
+        return self.materials[int(held.quadrics.material[quadric] if quadric >= 0 else held.triangles.material[place])]
 
     def frame_time(self, frame: int) -> float:
         """Time of a frame: t0 + i (t1 - t0) / (N - 1) (AFF `a`)."""

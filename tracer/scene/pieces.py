@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.scene.animation import Chain
-from tracer.scene.arrays import Float32, Float64
+from tracer.scene.arrays import BLOCK, Float32, Float64
 
 T = TypeVar("T")
-BLOCK = 1 << 18
-"""Triangles that are worked on at once."""
 
 
 class Place(Protocol):

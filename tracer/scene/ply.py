@@ -1,7 +1,8 @@
-"""Lists in binary PLY files, as trimesh reads them: it takes all lists of an element to be as long as its first.
+"""The head of a binary PLY file, and its lists as trimesh reads them: it takes all lists of an element to be as long as
+its first, and triangle strips (`element tristrips`, as Stanford's scans have them) for points.
 
-Faces of different lengths become triangles, triangle strips become one list, and lists of anything else, such as the
-grid of a range scan, are left out.
+Faces of different lengths become triangles, strips become one list and then triangles, and lists of anything else, such
+as the grid of a range scan, are left out.
 """
 
 from __future__ import annotations
@@ -50,17 +51,26 @@ class Element:
         return any(one.count is not None for one in self.properties)
 
 
+@dataclass
+class Head:
+    """What the head of a binary file says: where its body begins, the order of bytes, < or >, all elements, and the
+    lines that are of none."""
+
+    begin: int
+    order: str
+    elements: list[Element] = field(default_factory=list)
+    others: list[str] = field(default_factory=list)
+
+
 def with_even_lists(data: bytes) -> bytes:
     """A binary PLY file as trimesh reads it, with all faces and strips.
 
     Any other file comes back as it is, also one whose lists are even already.  Raises ValueError where the file ends
     too soon, or its head is damaged."""
-    begin = data.find(b"\n", data.find(b"end_header", 0, LONGEST_HEAD)) + 1
-    lines = data[:begin].decode("latin-1").splitlines()
-    if not lines or lines[0].strip() != "ply" or "format binary" not in lines[1] or "end_header" not in lines[-1]:
+    found = read_head(data)
+    if found is None:
         return data
-    order = ">" if "big" in lines[1] else "<"
-    elements, others = elements_of(lines[:-1], order)
+    begin, order, elements, others = found.begin, found.order, found.elements, found.others
     vertices = next((one.number for one in elements if one.name == "vertex"), 0)
     if not any(one.has_lists for one in elements) or any(one.has_lists for one in elements if one.name == "vertex"):
         return data
@@ -87,38 +97,38 @@ def with_even_lists(data: bytes) -> bytes:
     return b"".join(["".join(f"{line}\n" for line in [*head, "end_header"]).encode("latin-1"), *body, data[at:]])
 
 
-def elements_of(lines: list[str], order: str, most: int = MOST_PRIMITIVES) -> tuple[list[Element], list[str]]:
-    """All elements in their order, and the lines of the head that are of none; raises ValueError where it is damaged,
-    or names more than `most` of an element."""
-    elements: list[Element] = []
-    others = []
-    for line in lines:
+def read_head(data: bytes, most: int = MOST_PRIMITIVES) -> Head | None:
+    """What the head of a binary PLY file says, None for any other file; raises ValueError where it is damaged, or names
+    more than `most` of an element."""
+    begin = data.find(b"\n", data.find(b"end_header", 0, LONGEST_HEAD)) + 1
+    lines = data[:begin].decode("latin-1").splitlines()
+    if len(lines) < 3 or lines[0].strip() != "ply" or "format binary" not in lines[1] or "end_header" not in lines[-1]:
+        return None
+    found = Head(begin, ">" if "big" in lines[1] else "<")
+    for line in lines[:-1]:
         words = line.split()
         if words[:1] == ["element"]:
             _, name, number = words
             if not 0 <= int(number) <= most:
                 raise ValueError(line)
-            elements.append(Element(name, int(number), lines=[line]))
+            found.elements.append(Element(name, int(number), lines=[line]))
         elif words[:1] == ["property"]:
-            if not elements:
+            if not found.elements:
                 raise ValueError(f"{line}: of no element")
-            elements[-1].properties.append(_property(words, order))
-            elements[-1].lines.append(line)
+            found.elements[-1].properties.append(_property(words, found.order))
+            found.elements[-1].lines.append(line)
         else:
-            others.append(line)
-    return elements, others
+            found.others.append(line)
+    return found
 
 
 def _property(words: list[str], order: str) -> Property:
-    if unknown := [word for word in words[1:-1] if word not in {"list", *KINDS}]:
-        raise ValueError(f"unknown type {unknown[0]}")
-    if words[1] == "list":
-        _, _, count, said, name = words
-        if KINDS[count][0] == "f":
-            raise ValueError(count)
-        return Property(name, said, np.dtype(order + KINDS[said]), np.dtype(order + KINDS[count]))
-    _, said, name = words
-    return Property(name, said, np.dtype(order + KINDS[said]))
+    match words[1:]:
+        case [said, name] if said in KINDS:
+            return Property(name, said, np.dtype(order + KINDS[said]))
+        case ["list", count, said, name] if said in KINDS and KINDS.get(count, "f")[0] != "f":
+            return Property(name, said, np.dtype(order + KINDS[said]), np.dtype(order + KINDS[count]))
+    raise ValueError(f"{' '.join(words)}: no such property")
 
 
 # --- where everything is ------------------------------------------------------------------------------

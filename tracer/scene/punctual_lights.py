@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from tracer.scene.arrays import Float64
+from tracer.scene.arrays import Float64, vector
+from tracer.scene.bounds import ball_of
 from tracer.scene.limits import LARGEST
 from tracer.scene.model import Light, SceneObject
 
@@ -113,12 +114,10 @@ def _light(use: _Use, declared: Any, box: Float64 | None) -> tuple[Light, list[s
         raise _Unusable(f"it is brighter than {_BRIGHTEST:g}")
     named = _json(declared, str, "name") or f"light {use.number}"
     name = named if use.node.isdigit() else use.node  # trimesh names nodes without one by their numbers
-    r, g, b = color.tolist()
     if kind == "directional":
-        return Light(name, _far_away(use.matrix, box), (r, g, b)), []
-    x, y, z = use.matrix[:3, 3].tolist()
+        return Light(name, _far_away(use.matrix, box), vector(color)), []
     left_out = ["a spot shines in all directions here; its cone is left out"] if kind == "spot" else []
-    return Light(name, (x, y, z), (r, g, b), falloff="inverse square"), left_out
+    return Light(name, vector(use.matrix[:3, 3]), vector(color), falloff="inverse square"), left_out
 
 
 def _far_away(matrix: Float64, box: Float64 | None) -> tuple[float, float, float]:
@@ -127,10 +126,8 @@ def _far_away(matrix: Float64, box: Float64 | None) -> tuple[float, float, float
     length = float(np.linalg.norm(towards))
     if not length > 0:
         raise _Unusable("its node is scaled to nothing")
-    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
-    radius = float(np.linalg.norm(high - low)) / 2 or 1.0
-    x, y, z = ((low + high) / 2 + AWAY * radius * towards / length).tolist()
-    return x, y, z
+    centre, radius = ball_of(box)
+    return vector(centre + AWAY * radius * towards / length)
 
 
 def _exposed(lights: Sequence[Light], objects: Sequence[SceneObject]) -> tuple[Light, ...]:
@@ -151,8 +148,4 @@ def _exposed(lights: Sequence[Light], objects: Sequence[SceneObject]) -> tuple[L
     usual = float(np.median(arriving)) if len(centers) else 0.0
     if not usual > 0:
         return tuple(lights)
-    scaled = []
-    for light in lights:
-        r, g, b = (min(part / usual, _BRIGHTEST) for part in light.color)
-        scaled.append(replace(light, color=(r, g, b)))
-    return tuple(scaled)
+    return tuple(replace(one, color=vector(np.minimum(np.array(one.color) / usual, _BRIGHTEST))) for one in lights)

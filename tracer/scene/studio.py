@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.scene.arrays import Float32, Float64
-from tracer.scene.bounds import extent
+from tracer.scene.arrays import Float32, Float64, vector
+from tracer.scene.bounds import ball_of, extent
 from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Material, Scene, SceneObject, Triangles
 
@@ -88,8 +88,7 @@ def build_studio(corners: Float32, up: str, material: int, report: Callable[[], 
     lights = []
     for name, (place, size, color, samples) in _LAMPS.items():
         at = (middle + LAMP_DISTANCE * radius * (np.array(place) @ axes)) @ frame
-        x, y, z = at.tolist()
-        lights.append(Light(name, (x, y, z), color, kind="sphere", radius=size * radius, samples=samples))
+        lights.append(Light(name, vector(at), color, kind="sphere", radius=size * radius, samples=samples))
     centre = np.array([middle[0], ground, middle[2]])
     reach = FLOOR_REACH * radius
     corner = [centre + reach * (a * beside + b * behind) for a, b in ((-1, 1), (1, 1), (1, -1), (-1, -1))]
@@ -154,7 +153,7 @@ def _framing(points: Float32, away: Float64, frame: Float64, size: float, report
     `size` is their diagonal.
 
     Each side of the frame bounds a point's place by a plane, so the points that touch are found without a search."""
-    across, top, forward = Camera((0.0, 0.0, 0.0), tuple((-away).tolist())).basis()
+    across, top, forward = Camera((0.0, 0.0, 0.0), vector(-away)).basis()
     slope = FILLED * float(np.tan(np.radians(ANGLE) / 2))
     reach = np.full(5, -np.inf)
     for start in range(0, len(points), _BLOCK):
@@ -167,7 +166,7 @@ def _framing(points: Float32, away: Float64, frame: Float64, size: float, report
     size = size or 1.0
     back = min(-(right + left) / (2 * slope), -(upper + lower) / (2 * slope), -near - 0.05 * size)
     position = (right - left) / 2 * across + (upper - lower) / 2 * top + back * forward
-    return Camera(tuple((position @ frame).tolist()), tuple((-away @ frame).tolist()), tuple(frame[1].tolist()), ANGLE)
+    return Camera(vector(position @ frame), vector(-away @ frame), vector(frame[1]), ANGLE)
 
 
 def _two_triangles(quad: Float32, up: Float64, material: int) -> Triangles:
@@ -180,7 +179,7 @@ def _two_triangles(quad: Float32, up: Float64, material: int) -> Triangles:
 
 
 def _floor_material() -> Material:
-    return Material(FLOOR, tuple(_FLOOR_AMBIENT.tolist()), tuple(_FLOOR_COLOR.tolist()))
+    return Material(FLOOR, vector(_FLOOR_AMBIENT), vector(_FLOOR_COLOR))
 
 
 def _seen(point: Float64, up: Float64, lights: Sequence[Light]) -> tuple[float, float, float]:
@@ -189,8 +188,7 @@ def _seen(point: Float64, up: Float64, lights: Sequence[Light]) -> tuple[float, 
     for light in lights:
         way = np.array(light.position) - point
         color += _FLOOR_COLOR * light.color * max(float(way @ up / np.linalg.norm(way)), 0.0)
-    r, g, b = color.tolist()
-    return r, g, b
+    return vector(color)
 
 
 # --- without a studio: the whole model in view, lit from over both shoulders ---------------------------
@@ -198,27 +196,17 @@ def _seen(point: Float64, up: Float64, lights: Sequence[Light]) -> tuple[float, 
 
 def framing_camera(box: Float64 | None, angle: float = 45.0) -> Camera:
     """A camera that sees the whole of a box (2, 3), from the front, the right and above; y is up."""
-    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
-    centre, radius = (low + high) / 2, _radius(low, high)
+    centre, radius = ball_of(box)
     away = np.array([0.45, 0.35, 1.0])
     away /= np.linalg.norm(away)
     position = centre + away * (1.05 * radius / np.sin(np.radians(angle) / 2))
-    return Camera(tuple(position.tolist()), tuple((-away).tolist()), (0.0, 1.0, 0.0), angle)
+    return Camera(vector(position), vector(-away), (0.0, 1.0, 0.0), angle)
 
 
 def framing_lights(box: Float64 | None, camera: Camera) -> tuple[Light, Light]:
     """A key light over the camera's left shoulder and a weaker one over its right, both well outside the box."""
-    low, high = (np.full(3, -1.0), np.full(3, 1.0)) if box is None else box
-    centre, reach = (low + high) / 2, 3.0 * _radius(low, high)
+    centre, radius = ball_of(box)
     right, up, forward = camera.basis()
-    key = centre + reach * (up * 0.9 - right * 0.7 - forward * 0.8)
-    fill = centre + reach * (up * 0.5 + right * 1.0 - forward * 0.6)
-    return (
-        Light("key", tuple(key.tolist()), (0.8, 0.8, 0.8)),
-        Light("fill", tuple(fill.tolist()), (0.35, 0.35, 0.35)),
-    )
-
-
-def _radius(low: Float64, high: Float64) -> float:
-    """Half the diagonal of a box, and 1 for a single point."""
-    return float(np.linalg.norm(high - low)) / 2 or 1.0
+    key = centre + 3.0 * radius * (up * 0.9 - right * 0.7 - forward * 0.8)
+    fill = centre + 3.0 * radius * (up * 0.5 + right * 1.0 - forward * 0.6)
+    return (Light("key", vector(key), (0.8, 0.8, 0.8)), Light("fill", vector(fill), (0.35, 0.35, 0.35)))

@@ -85,9 +85,8 @@ def thing_of(scene: Scene, primitive: int) -> Thing:
 
 def owner_of(scene: Scene, primitive: int) -> tuple[int, int]:
     """The object that holds a primitive, and the part of it, -1 for all."""
-    index = scene.object_of(primitive)
-    part_of = scene.objects[index].part_of
-    return index, -1 if part_of is None else int(part_of[_place(scene, index, primitive)])
+    held, place = scene.place_of(primitive)
+    return scene.object_of(primitive), -1 if held.part_of is None else int(held.part_of[place])
 
 
 def thing_numbers(scene: Scene) -> Int32:
@@ -101,13 +100,6 @@ def thing_numbers(scene: Scene) -> Int32:
         else:
             found[held] = np.array([places[index, part] for part in range(len(one.parts))], np.int32)[one.part_of]
     return found
-
-
-def _place(scene: Scene, index: int, primitive: int) -> int:
-    """A primitive's place in its object: its triangles, then its quadrics."""
-    if primitive < scene.triangle_count:
-        return primitive - int(scene.triangle_offsets[index])
-    return len(scene.objects[index].triangles) + primitive - int(scene.quadric_offsets[index])
 
 
 def held_by(scene: Scene, index: int) -> Held:

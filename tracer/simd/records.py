@@ -88,7 +88,7 @@ _POINTERS = {"float32": f32_at, "float64": f64_at, "int32": i32_at, "int64": i64
 
 
 class _Array(NamedTuple):
-    """An array of so many dimensions."""
+    """An array of so many dimensions; of none for a flat pointer to its numbers, whose shape nobody is told."""
 
     dimensions: int
     kind: str
@@ -102,6 +102,10 @@ I32x2D = Annotated[NDArray[np.int32], _Array(2, "int32")]
 I64 = Annotated[NDArray[np.int64], _Array(1, "int64")]
 I64x2D = Annotated[NDArray[np.int64], _Array(2, "int64")]
 Bytes = Annotated[NDArray[Any], _Array(1, "uint8")]  # uint8 or bool
+F32At = Annotated[NDArray[np.float32], _Array(0, "float32")]
+I32At = Annotated[NDArray[np.int32], _Array(0, "int32")]
+I64At = Annotated[NDArray[np.int64], _Array(0, "int64")]
+BytesAt = Annotated[NDArray[Any], _Array(0, "uint8")]
 
 
 def pack(value: Any) -> NDArray[np.int64]:
@@ -113,9 +117,10 @@ def pack(value: Any) -> NDArray[np.int64]:
         mark = _array_of(hint)
         if mark is not None:
             same = given.dtype == mark.kind or (mark.kind == "uint8" and given.dtype == np.bool_)
-            if given.ndim != mark.dimensions or not same or not given.flags.c_contiguous:
+            fits = mark.dimensions in (0, given.ndim)
+            if not fits or not same or not given.flags.c_contiguous:
                 raise TypeError(f"{type(value).__name__}.{name} is not {mark}")
-            numbers += [given.ctypes.data, *given.shape]
+            numbers += [given.ctypes.data, *given.shape[: mark.dimensions]]
         elif hasattr(hint, "_fields"):
             numbers += pack(given).tolist()
         elif hint is float:
@@ -156,6 +161,11 @@ def block_size(record: type) -> int:
     return 8 * _read(record, 0, "record")[1]
 
 
+def offset_of(record: type, field: str) -> int:
+    """Bytes from the beginning of a block of whole numbers to a field."""
+    return 8 * list(_fields(record)).index(field)
+
+
 def _array_of(hint: Any) -> _Array | None:
     marks = [mark for mark in getattr(hint, "__metadata__", ()) if isinstance(mark, _Array)]
     return marks[0] if marks else None
@@ -168,7 +178,8 @@ def _read(record: type, at: int, name: str) -> tuple[str, int, dict[str, type]]:
         mark = _array_of(hint)
         if mark is not None:
             shape = "".join(f"load_i64(address + {8 * (at + 1 + k)}), " for k in range(mark.dimensions))
-            values.append(f"carray({mark.kind}_at(load_i64(address + {8 * at})), ({shape}))")
+            pointer = f"{mark.kind}_at(load_i64(address + {8 * at}))"
+            values.append(f"carray({pointer}, ({shape}))" if shape else pointer)
             at += 1 + mark.dimensions
         elif hasattr(hint, "_fields"):
             value, at, more = _read(hint, at, f"{name}_{field}")

@@ -45,7 +45,7 @@ class Tree(FrameView):
     key = "Shift+T"
     help = (
         "A slice through a tree that is built where rays arrive: built parts by their level, and grey stripes where no "
-        "ray has been yet. Lines are the borders of parts, and white ones those of objects or pieces. The slice goes "
+        "ray has been yet. Lines are the borders of parts, and white ones those of objects or subtrees. The slice goes "
         "through everything; what lies before it shows as light and shade."
     )
     has_range = has_slice = is_flat = shows_picture = everywhere = True
@@ -80,7 +80,7 @@ class Tree(FrameView):
             facts.append(fact("primitives in them", in_nodes, "of all; the others wait for a ray to come near"))
         entries = (
             Entry("not built: no ray has come", WAITS_COLORS[1]),
-            Entry(f"border of {'an object' if parts.owner == 'object' else 'a piece'}", (1.0, 1.0, 1.0)),
+            Entry(f"border of {'an object' if parts.owner == 'object' else 'a subtree'}", (1.0, 1.0, 1.0)),
         )
         scale = Scale(f"level {low:.4g}", f"{high:.4g}")
         return Legend(f"{self.label}: levels of its parts, {parts.name}", (), entries, scale, tuple(facts))

@@ -7,9 +7,8 @@ from numpy.typing import NDArray
 
 from tracer.geometry.boxes import PADDING
 from tracer.geometry.building import CHUNK, in_chunks
-from tracer.geometry.bvh8.layout import BLOCK_SIZE, NODE_SIZE, Tree
+from tracer.geometry.bvh8.layout import BLOCK_SIZE, NODE_SIZE, Offsets, Tree, clear, write_topology
 from tracer.geometry.bvh8.refit import fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
-from tracer.geometry.bvh8.write import Offsets, clear, write_topology
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import Topology

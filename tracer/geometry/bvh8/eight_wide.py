@@ -6,27 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tracer.geometry.bvh8.layout import QUADRIC
-from tracer.geometry.bvh8.packet import (
-    DX,
-    DY,
-    DZ,
-    FAR,
-    IX,
-    IY,
-    IZ,
-    NUMBER,
-    OX,
-    OY,
-    OZ,
-    ROW,
-    T_MIN,
-    T,
-    U,
-    V,
-)
+from tracer.geometry.bvh8.layout import PRIMITIVES, QUADRIC
+from tracer.geometry.bvh8.packet import DIRECTION, FAR, INVERSE, NUMBER, ORIGIN, ROW, T_MIN, T, U, V, three_of
 from tracer.geometry.bvh8.packet_tree import code_of
-from tracer.geometry.bvh8.placed import NUMBERS, block_planes, triangles_of
+from tracer.geometry.bvh8.placed import block_planes, triangles_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import MISS, Ray
 from tracer.geometry.triangle_test import ZERO, crossing, terms_of
@@ -90,12 +73,9 @@ def _near(inverse):
 @inlined
 def single_ray_at(a):
     """The ray whose column in a packet's memory begins at an address."""
-    ix, iy, iz = load_f32(a + IX * ROW), load_f32(a + IY * ROW), load_f32(a + IZ * ROW)
-    return SingleRay(
-        load_f32(a + OX * ROW), load_f32(a + OY * ROW), load_f32(a + OZ * ROW),
-        load_f32(a + DX * ROW), load_f32(a + DY * ROW), load_f32(a + DZ * ROW), ix, iy, iz,
-        _near(ix), _near(iy), _near(iz), load_f32(a + T_MIN * ROW),
-    )  # fmt: skip
+    (ox, oy, oz), (dx, dy, dz), (ix, iy, iz) = three_of(a, ORIGIN), three_of(a, DIRECTION), three_of(a, INVERSE)
+    near_x, near_y, near_z = _near(ix), _near(iy), _near(iz)
+    return SingleRay(ox, oy, oz, dx, dy, dz, ix, iy, iz, near_x, near_y, near_z, load_f32(a + T_MIN * ROW))
 
 
 @inlined
@@ -111,8 +91,7 @@ def children_of(node, r, far):
 def children_at(node, a):
     """As `children_of`, for one ray and one node, the ray from its column in a packet's memory: to test both planes
     takes less time than to find out from the direction which of them comes first."""
-    ox, oy, oz = load_f32(a + OX * ROW), load_f32(a + OY * ROW), load_f32(a + OZ * ROW)
-    ix, iy, iz = load_f32(a + IX * ROW), load_f32(a + IY * ROW), load_f32(a + IZ * ROW)
+    (ox, oy, oz), (ix, iy, iz) = three_of(a, ORIGIN), three_of(a, INVERSE)
     ax, bx = (load_f32x8(node) - ox) * ix, (load_f32x8(node + 96) - ox) * ix
     ay, by = (load_f32x8(node + 32) - oy) * iy, (load_f32x8(node + 128) - oy) * iy
     az, bz = (load_f32x8(node + 64) - oz) * iz, (load_f32x8(node + 160) - oz) * iz
@@ -140,7 +119,7 @@ def _first_lane(block, t, bits):
         return lowest_bit(bits)
     mask = mask8(bits)
     mask = mask & (t == smallest(select(mask, t, FAR)))
-    numbers = load_i32x8(block + NUMBERS)
+    numbers = load_i32x8(block + 4 * PRIMITIVES)
     return lowest_bit(bits_of(mask & (numbers == smallest(select(mask, numbers, NOBODY)))))
 
 
@@ -163,7 +142,7 @@ def nearest_in_block(block, a):
     t = as_f32(as_i32(m.height) ^ sign) * scale
     bits = bits_of(crosses & (t > r.t_min) & (t <= far) & _inside_block(block, r, t))
     lane = _first_lane(block, t, bits) & (WIDTH - 1)
-    nearest, number = lane_of(t, lane), load_i32(block + NUMBERS + 4 * lane)
+    nearest, number = lane_of(t, lane), load_i32(block + 4 * (PRIMITIVES + lane))
     first = np.int64(nearest == far) & np.int64(number < load_i32(a + NUMBER * ROW))
     nearer = np.int32(-(np.int64(bits != 0) & (np.int64(nearest < far) | first)))
     _replace(a + T * ROW, as_i32(nearest), nearer)
@@ -181,7 +160,7 @@ def any_in_block(block, r, far):
         return np.int32(MISS)
     t = as_f32(as_i32(m.height) ^ sign) * (np.float32(1) / area)
     bits = bits_of(crosses & (t > r.t_min) & (t < far) & _inside_block(block, r, t))
-    return load_i32(block + NUMBERS + 4 * lowest_bit(bits)) if bits != 0 else np.int32(MISS)
+    return load_i32(block + 4 * (PRIMITIVES + lowest_bit(bits))) if bits != 0 else np.int32(MISS)
 
 
 @inlined

@@ -15,15 +15,14 @@ from numpy.typing import NDArray
 
 from tracer.geometry.boxes import PADDING
 from tracer.geometry.bvh8.build import count_blocks, empty_tree
-from tracer.geometry.bvh8.layout import BOX, Tree
-from tracer.geometry.bvh8.refit import BLOCK_BYTES, Links, gather_corners, make_links, move_blocks, pad_box, unite
-from tracer.geometry.bvh8.write import Offsets, clear_nodes, set_child, write_topology
+from tracer.geometry.bvh8.layout import BLOCK, BOX, Offsets, Tree, clear_nodes, set_child, write_topology
+from tracer.geometry.bvh8.refit import Links, gather_corners, make_links, move_blocks, pad_box, unite
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
 from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_i32
 
-NODE, BLOCK, TRIANGLE, QUADRIC = 0, 1, 2, 3  # columns of `starts`
+NODES, BLOCKS, TRIANGLES, QUADRICS = 0, 1, 2, 3  # columns of `starts`
 
 
 class ObjectTrees(NamedTuple):
@@ -52,8 +51,8 @@ def build_object_trees(
     starts = np.zeros((len(triangles), 4), np.int32)
     starts[:2, :2] = max(2, 1 + len(topologies)), 1  # two top-level BVHs share these nodes, and either may be empty
     starts[2:, :2] = starts[1, :2] + np.cumsum(sizes, axis=0).reshape(-1, 2)
-    starts[:, TRIANGLE], starts[:, QUADRIC] = triangles, quadrics
-    tree = empty_tree(starts[-1, NODE], starts[-1, BLOCK] - 1)
+    starts[:, TRIANGLES], starts[:, QUADRICS] = triangles, quadrics
+    tree = empty_tree(starts[-1, NODES], starts[-1, BLOCKS] - 1)
     links = make_links(len(tree.nodes), len(tree.blocks), quadrics[-1], len(counts))
     for i, topology in enumerate(topologies, 1):
         node, block, triangle, quadric = starts[i].tolist()
@@ -63,14 +62,14 @@ def build_object_trees(
 
 def blocks_of(trees: ObjectTrees, index: int) -> NDArray[np.float32]:
     """The blocks (m, BLOCK_SIZE) of an object."""
-    return trees.tree.blocks[trees.starts[index, BLOCK] : trees.starts[index + 1, BLOCK]]
+    return trees.tree.blocks[trees.starts[index, BLOCKS] : trees.starts[index + 1, BLOCKS]]
 
 
 @kernel
 def load_corners(trees, corners, first, last):
     """Copy the corners of objects first to last - 1 from corners (d, 9) of the triangles of objects 1 to n - 1."""
-    start, end = trees.starts[first, BLOCK], trees.starts[last, BLOCK]
-    gather_corners(trees.corners, trees.tree.blocks, corners, trees.starts[1, TRIANGLE], start, end)
+    start, end = trees.starts[first, BLOCKS], trees.starts[last, BLOCKS]
+    gather_corners(trees.corners, trees.tree.blocks, corners, trees.starts[1, TRIANGLES], start, end)
 
 
 @kernel
@@ -85,27 +84,27 @@ def move_objects(trees, matrices, present, boxes):
     for i in range(1, len(present)):
         if present[i]:
             matrix = address_of(matrices) + 48 * i
-            moved = move_blocks(blocks, corners, matrix, starts[i, BLOCK], starts[i + 1, BLOCK])
+            moved = move_blocks(blocks, corners, matrix, starts[i, BLOCKS], starts[i + 1, BLOCKS])
             extent = max(extent, moved)
-            for q in range(starts[i, QUADRIC], starts[i + 1, QUADRIC]):
+            for q in range(starts[i, QUADRICS], starts[i + 1, QUADRICS]):
                 for k in range(6):
                     extent = max(extent, abs(boxes[q, k]))
     padding = np.float32(PADDING) * extent
     for i in range(1, len(present)):
         if present[i]:
-            for b in range(starts[i, BLOCK], starts[i + 1, BLOCK]):
-                box = blocks + BLOCK_BYTES * b + 4 * BOX
+            for b in range(starts[i, BLOCKS], starts[i + 1, BLOCKS]):
+                box = blocks + BLOCK * b + 4 * BOX
                 pad_box(nodes, roots, load_i32(block_links + 4 * b), box, padding)
-            for q in range(starts[i, QUADRIC], starts[i + 1, QUADRIC]):
+            for q in range(starts[i, QUADRICS], starts[i + 1, QUADRICS]):
                 pad_box(nodes, roots, trees.links.quadrics[q], address_of(boxes) + 24 * q, padding)
-            unite(nodes, roots, node_links, starts[i, NODE], starts[i + 1, NODE])
+            unite(nodes, roots, node_links, starts[i, NODES], starts[i + 1, NODES])
 
 
 @kernel
 def _write_top_level(trees, topology, objects, first):
     """Write a top-level BVH over objects (p,) into nodes from `first` on; the rest of its room is emptied."""
     nodes, roots, links = address_of(trees.tree.nodes), address_of(trees.links.roots), trees.links.nodes
-    clear_nodes(nodes, first, trees.starts[1, NODE])
+    clear_nodes(nodes, first, trees.starts[1, NODES])
     links[first] = ~0
     for i in range(len(topology.children)):
         for slot in range(WIDTH):
@@ -115,7 +114,7 @@ def _write_top_level(trees, topology, objects, first):
                 links[first + child] = link
             elif child != VACANT:
                 item = objects[topology.order[topology.leaves[~child, 0]]]
-                set_child(nodes, link, trees.starts[item, NODE])
+                set_child(nodes, link, trees.starts[item, NODES])
                 pad_box(nodes, roots, link, roots + 24 * item, np.float32(0))
     unite(nodes, roots, address_of(links), first, first + len(topology.children))
 

@@ -6,27 +6,15 @@ rays go through a tree together (`packet_tree`) or one by one (`single_ray`), so
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba.core import types
 from numba.extending import overload
 
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import inverse
-from tracer.geometry.queries import (
-    BLOCKED,
-    DIRECTION,
-    DYNAMIC_OBJECTS,
-    HIT_PRIMITIVE,
-    HIT_T,
-    HIT_U,
-    HIT_V,
-    OCCLUDER,
-    ORIGIN,
-    STATIC_GEOMETRY,
-    STRIDE,
-    T_MAX,
-)
-from tracer.geometry.queries import T_MIN as BATCH_T_MIN
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, read_batch
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.geometry.triangle_test import ZERO
 from tracer.runtime.kernels import inlined, subkernel
@@ -40,7 +28,6 @@ from tracer.simd import (
     load_f32x16,
     load_i32,
     load_i32x16,
-    load_i64,
     lowest_bit,
     maximum,
     minimum,
@@ -52,6 +39,7 @@ from tracer.simd import (
     u8_at,
 )
 
+INLINED: Any = {"forceinline": True, "error_model": "numpy"}  # as `inlined`, for what has two versions
 LANES = 16
 PACKET = MOST_TOGETHER  # rays
 ROW = 4 * PACKET  # bytes of one number of each ray
@@ -62,32 +50,37 @@ CLOSED_T = -LARGEST  # t of a ray with nothing to ask
 STATIC_T = np.float32(2) * BLOCKED_T  # t of a ray that something static blocks, once the static tree is done
 
 # Rows of a packet's memory: the numbers of all rays, their eight frusta (`packet_group`), and scratch.
-DX, DY, DZ, IX, IY, IZ, T_MIN, T, NUMBER, U, V, ENTER, LEAVE, OX, OY, OZ = range(16)
+# Directions, their inverses and origins have three rows each.
+DIRECTION, INVERSE, T_MIN, T, NUMBER, U, V, ENTER, LEAVE, ORIGIN = 0, 3, 6, 7, 8, 9, 10, 11, 12, 13
 FRUSTA = 16 * ROW
 SCRATCH = FRUSTA + 12 * 32  # twelve rows of eight
 TERMS = SCRATCH + 64
 MEMORY = TERMS + 320
 
 
+@inlined
+def three_of(a, row):
+    """Three rows from this one on, of the ray whose column begins at an address."""
+    return load_f32(a + row * ROW), load_f32(a + (row + 1) * ROW), load_f32(a + (row + 2) * ROW)
+
+
+@inlined
+def three_of_16(a, row):
+    """The same of the sixteen rays whose columns begin there."""
+    return load_f32x16(a + row * ROW), load_f32x16(a + (row + 1) * ROW), load_f32x16(a + (row + 2) * ROW)
+
+
 def origin_of(origin, memory, v):
-    """Origins of the rays of a packet's v-th vector: the point that all share, or what the packet's memory holds."""
+    """Origins of the rays of a packet's v-th vector: the point that all share, or, where that is None, what the
+    packet's memory holds."""
     raise NotImplementedError("only kernels call this")
 
 
-@overload(origin_of, jit_options={"forceinline": True, "error_model": "numpy"})
+@overload(origin_of, jit_options=INLINED)
 def _origin_of(origin, memory, v):
     if isinstance(origin, types.NoneType):
-
-        def separate(origin, memory, v):
-            a = memory + 64 * v
-            return load_f32x16(a + OX * ROW), load_f32x16(a + OY * ROW), load_f32x16(a + OZ * ROW)
-
-        return separate
-
-    def common(origin, memory, v):
-        return origin
-
-    return common
+        return lambda origin, memory, v: three_of_16(memory + 64 * v, ORIGIN)
+    return lambda origin, memory, v: origin
 
 
 @inlined
@@ -112,29 +105,28 @@ def _row(memory, row, source, count, rest):
 def fill(memory, batch, first, count):
     """Read rays first to first + count - 1 into a packet; how many vectors they are, the lower and upper corner of the
     box around their origins, and whether all numbers are finite: rays that are not have no frustum."""
-    n, at, last = 4 * load_i64(batch + STRIDE), 4 * first, 4 * (count - 1)
-    o, d = load_i64(batch + ORIGIN) + at, load_i64(batch + DIRECTION) + at
-    t_min, t_max = load_i64(batch + BATCH_T_MIN) + at, load_i64(batch + T_MAX) + at
+    rays = read_batch(batch)
+    n, at, last = 4 * rays.stride, 4 * first, 4 * (count - 1)
+    o, d, t_min, t_max = rays.origin + at, rays.direction + at, rays.t_min + at, rays.t_max + at
     for axis in range(3):
-        _row(memory, OX + axis, o + axis * n, count, load_f32(o + axis * n + last))
-        _row(memory, DX + axis, d + axis * n, count, load_f32(d + axis * n + last))
+        _row(memory, ORIGIN + axis, o + axis * n, count, load_f32(o + axis * n + last))
+        _row(memory, DIRECTION + axis, d + axis * n, count, load_f32(d + axis * n + last))
     _row(memory, T_MIN, t_min, count, load_f32(t_min + last))
     _row(memory, T, t_max, count, CLOSED_T)
     vectors = (count + LANES - 1) // LANES
-    lx = hx = load_f32x16(memory + OX * ROW)
-    ly = hy = load_f32x16(memory + OY * ROW)
-    lz = hz = load_f32x16(memory + OZ * ROW)
+    lx, ly, lz = three_of_16(memory, ORIGIN)
+    hx, hy, hz = lx, ly, lz
     nothing = f32x16(ZERO)
     for v in range(vectors):
         a = memory + 64 * v
-        dx, dy, dz = load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
-        store(a + IX * ROW, inverse(dx))
-        store(a + IY * ROW, inverse(dy))
-        store(a + IZ * ROW, inverse(dz))
+        dx, dy, dz = three_of_16(a, DIRECTION)
+        store(a + INVERSE * ROW, inverse(dx))
+        store(a + (INVERSE + 1) * ROW, inverse(dy))
+        store(a + (INVERSE + 2) * ROW, inverse(dz))
         t = load_f32x16(a + T * ROW)
         store(a + T * ROW, select(t > BLOCKED_T, minimum(t, LARGEST), CLOSED_T))
         store(a + NUMBER * ROW, i32x16(MISS))
-        x, y, z = load_f32x16(a + OX * ROW), load_f32x16(a + OY * ROW), load_f32x16(a + OZ * ROW)
+        x, y, z = three_of_16(a, ORIGIN)
         lx, ly, lz = minimum(lx, x), minimum(ly, y), minimum(lz, z)
         hx, hy, hz = maximum(hx, x), maximum(hy, y), maximum(hz, z)
         nothing = nothing + ((x + y + z) + (dx + dy + dz) + load_f32x16(a + T_MIN * ROW)) * ZERO
@@ -159,7 +151,7 @@ def lanes_inside(origin, memory, v, planes):
     x0, y0, z0, x1, y1, z1 = planes
     ox, oy, oz = origin_of(origin, memory, v)
     a = memory + 64 * v
-    ix, iy, iz = load_f32x16(a + IX * ROW), load_f32x16(a + IY * ROW), load_f32x16(a + IZ * ROW)
+    ix, iy, iz = three_of_16(a, INVERSE)
     ax, bx = (x0 - ox) * ix, (x1 - ox) * ix
     ay, by = (y0 - oy) * iy, (y1 - oy) * iy
     az, bz = (z0 - oz) * iz, (z1 - oz) * iz
@@ -171,9 +163,8 @@ def lanes_inside(origin, memory, v, planes):
 @subkernel
 def keep_hits(memory, batch, first, count):
     """Write a packet's hits to the arrays that the batch names."""
-    at = 4 * first
-    t, primitive = load_i64(batch + HIT_T) + at, load_i64(batch + HIT_PRIMITIVE) + at
-    u, v = load_i64(batch + HIT_U) + at, load_i64(batch + HIT_V) + at
+    at, hits = 4 * first, read_batch(batch)
+    t, primitive, u, v = hits.t + at, hits.primitive + at, hits.u + at, hits.v + at
     i = 0
     while i + LANES <= count:
         a = memory + 4 * i
@@ -207,7 +198,8 @@ def mark_static(memory, vectors):
 @subkernel
 def keep_blocked(memory, batch, first, count):
     """Write what blocks the rays of a packet, and its number, to the arrays that the batch names."""
-    blocked, a = load_i64(batch + BLOCKED) + first, memory + T * ROW
+    found, a = read_batch(batch), memory + T * ROW
+    blocked = found.blocked + first
     i = 0
     while i + LANES <= count:
         t = load_f32x16(a + 4 * i)
@@ -218,7 +210,6 @@ def keep_blocked(memory, batch, first, count):
         t = load_f32(a + 4 * i)
         answers[i] = np.uint8(STATIC_GEOMETRY if t == STATIC_T else (DYNAMIC_OBJECTS if t == BLOCKED_T else 0))
         i += 1
-    occluders = load_i64(batch + OCCLUDER)
-    if occluders != 0:
+    if found.occluders != 0:
         for k in range(0, 4 * count, 4):
-            store(occluders + 4 * first + k, load_i32(memory + NUMBER * ROW + k))
+            store(found.occluders + 4 * first + k, load_i32(memory + NUMBER * ROW + k))

@@ -11,14 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tracer.geometry.boxes import TINY
-from tracer.geometry.bvh8.frustum import MARGIN, NO_RAYS, Frustum, axes_of, wider
-from tracer.geometry.bvh8.packet import DX, DY, DZ, FRUSTA, IX, OX, ROW, T_MIN, T
+from tracer.geometry.bvh8.packet import DIRECTION, FRUSTA, INVERSE, ORIGIN, ROW, T_MIN, T
 from tracer.geometry.triangle_test import ZERO
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
     f32x8,
     largest,
+    load_f32,
     load_f32x8,
     load_f32x16,
     lowest_bit,
@@ -62,11 +62,11 @@ def _slopes(memory, v, axis, way):
     """Least and greatest slopes of the v-th vector along the other two axes; HUGE where some ray goes the other way.
 
     A component so small that its inverse is cut short (`boxes.inverse`) may count as much as TINY."""
-    if smallest(_along(memory, DX, v, axis) * way) <= TINY:
+    if smallest(_along(memory, DIRECTION, v, axis) * way) <= TINY:
         return -HUGE, HUGE, -HUGE, HUGE
-    scale = _along(memory, IX, v, axis) * way
-    slope_u = _along(memory, DX, v, (axis + 1) % 3) * scale
-    slope_v = _along(memory, DX, v, (axis + 2) % 3) * scale
+    scale = _along(memory, INVERSE, v, axis) * way
+    slope_u = _along(memory, DIRECTION, v, (axis + 1) % 3) * scale
+    slope_v = _along(memory, DIRECTION, v, (axis + 2) % 3) * scale
     least = np.float32(2) * TINY * largest(scale)
     return smallest(slope_u) - least, largest(slope_u) + least, smallest(slope_v) - least, largest(slope_v) + least
 
@@ -83,7 +83,7 @@ def lead_of(memory, v):
     for its slopes differ by no more than WIDEST."""
     best, axis, way = ZERO, 0, ZERO
     for k in range(3):
-        d = _along(memory, DX, v, k)
+        d = _along(memory, DIRECTION, v, k)
         up, down = smallest(d), -largest(d)
         if up > best:
             best, axis, way = up, k, np.float32(1)
@@ -108,15 +108,15 @@ def _put_bounds(memory, row, v, x):
 @inlined
 def _put_starts(memory, v, axes):
     """Store where the rays of the v-th vector start."""
-    _put_bounds(memory, START, v, _along(memory, OX, v, axes.along) * axes.way)
-    _put_bounds(memory, START + 2, v, _along(memory, OX, v, (axes.along + 1) % 3))
-    _put_bounds(memory, START + 4, v, _along(memory, OX, v, (axes.along + 2) % 3))
+    _put_bounds(memory, START, v, _along(memory, ORIGIN, v, axes.along) * axes.way)
+    _put_bounds(memory, START + 2, v, _along(memory, ORIGIN, v, (axes.along + 1) % 3))
+    _put_bounds(memory, START + 4, v, _along(memory, ORIGIN, v, (axes.along + 2) % 3))
 
 
 @inlined
 def _put_reach(memory, v, axes):
     """Store how far along the axis the rays of the v-th vector still look."""
-    reach = largest(load_f32x16(memory + T * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
+    reach = largest(load_f32x16(memory + T * ROW + 64 * v) * _along(memory, DIRECTION, v, axes.along) * axes.way)
     _put(memory, REACH, v, reach + MARGIN * reach)
 
 
@@ -141,7 +141,7 @@ def _put_frustum(memory, v, axes):
     _put(memory, SLOPE + 1, v, u1)
     _put(memory, SLOPE + 2, v, v0)
     _put(memory, SLOPE + 3, v, v1)
-    near = smallest(load_f32x16(memory + T_MIN * ROW + 64 * v) * _along(memory, DX, v, axes.along) * axes.way)
+    near = smallest(load_f32x16(memory + T_MIN * ROW + 64 * v) * _along(memory, DIRECTION, v, axes.along) * axes.way)
     _put(memory, NEAR, v, maximum(near - MARGIN * near, ZERO))
     _put_reach(memory, v, axes)
     _put_starts(memory, v, axes)
@@ -197,9 +197,9 @@ def group_of(memory, vectors, axis, way):
         width = _put_frustum(memory, v, axes)
         members |= np.int64(width <= WIDEST) << v
         wide |= np.int64(width > NARROW) << v
-    dx = _least_and_greatest(memory, DX, members)
-    dy = _least_and_greatest(memory, DY, members)
-    dz = _least_and_greatest(memory, DZ, members)
+    dx = _least_and_greatest(memory, DIRECTION, members)
+    dy = _least_and_greatest(memory, DIRECTION + 1, members)
+    dz = _least_and_greatest(memory, DIRECTION + 2, members)
     low, high = (dx[0], dy[0], dz[0]), (dx[1], dy[1], dz[1])
     return Group(members, wide, axes, _around(frusta_of(memory)), low, high)
 
@@ -214,3 +214,85 @@ def reaches_of(memory):
 def looking(memory, distance):
     """The vectors, as bits, that still look beyond a distance along the axis."""
     return bits_of(reaches_of(memory) >= distance)
+
+
+MARGIN = np.float32(2e-6)
+NO_RAYS = np.float32(-1)  # where a frustum ends that holds no ray: before it begins
+
+
+class Axes(NamedTuple):
+    """The axis that frusta go along, 1 or -1 for the way, and, for a box whose six numbers lie 32 bytes
+    apart, where its planes are: near and far along the axis, low and high along the other two."""
+
+    along: Any
+    way: Any
+    near: Any
+    far: Any
+    low_u: Any
+    high_u: Any
+    low_v: Any
+    high_v: Any
+
+
+class Frustum(NamedTuple):
+    """Bounds of rays: where they start, along the axis in the way they go and along the other two axes; their slopes;
+    and the distance along the axis from which on they look."""
+
+    start0: Any
+    start1: Any
+    u_start0: Any
+    u_start1: Any
+    v_start0: Any
+    v_start1: Any
+    u0: Any
+    u1: Any
+    v0: Any
+    v1: Any
+    near: Any
+
+
+@inlined
+def axes_of(axis, way):
+    """Frusta along an axis, 0 to 2, upwards for 1 and downwards for -1."""
+    u, v = 32 * ((axis + 1) % 3), 32 * ((axis + 2) % 3)
+    near = 32 * axis + (96 if way < np.float32(0) else 0)
+    return Axes(axis, way, near, 64 * axis + 96 - near, u, u + 96, v, v + 96)
+
+
+@inlined
+def wider(low, high):
+    """An interval of slopes, by the margin wider."""
+    least, greatest = maximum(low, -low), maximum(high, -high)
+    return low - MARGIN * least, high + MARGIN * greatest
+
+
+@inlined
+def box_at(a, axes):
+    """Planes of the box at an address, as `entering` wants them."""
+    return (
+        load_f32(a + axes.near) * axes.way, load_f32(a + axes.far) * axes.way,
+        load_f32(a + axes.low_u), load_f32(a + axes.high_u), load_f32(a + axes.low_v), load_f32(a + axes.high_v),
+    )  # fmt: skip
+
+
+@inlined
+def boxes_at(a, axes):
+    """Planes of the eight boxes at an address."""
+    return (
+        load_f32x8(a + axes.near) * axes.way, load_f32x8(a + axes.far) * axes.way,
+        load_f32x8(a + axes.low_u), load_f32x8(a + axes.high_u),
+        load_f32x8(a + axes.low_v), load_f32x8(a + axes.high_v),
+    )  # fmt: skip
+
+
+@inlined
+def entering(planes, f, reach):
+    """(least distance along the axis, mask): which boxes some ray of which frustum may enter, if it looks as far as
+    `reach` along the axis."""
+    near, far, low_u, high_u, low_v, high_v = planes
+    enter, leave = maximum(near - f.start1, f.near), minimum(far - f.start0, reach)
+    low_side = minimum(enter * f.u0, leave * f.u0) <= high_u - f.u_start0
+    high_side = maximum(enter * f.u1, leave * f.u1) >= low_u - f.u_start1
+    bottom = minimum(enter * f.v0, leave * f.v0) <= high_v - f.v_start0
+    top = maximum(enter * f.v1, leave * f.v1) >= low_v - f.v_start1
+    return enter, (enter <= leave) & low_side & high_side & bottom & top

@@ -10,15 +10,16 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
+from tracer.geometry.bvh8.layout import COUNT, PRIMITIVES
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
-    DX,
-    DY,
-    DZ,
+    DIRECTION,
     ENTER,
     FAR,
+    INLINED,
     LEAVE,
     NUMBER,
+    ORIGIN,
     ROW,
     T_MIN,
     TERMS,
@@ -27,8 +28,10 @@ from tracer.geometry.bvh8.packet import (
     V,
     lanes_inside,
     origin_of,
+    three_of,
+    three_of_16,
 )
-from tracer.geometry.bvh8.placed import COUNT, NUMBERS, block_planes, child_planes, triangle_of, triangles_of
+from tracer.geometry.bvh8.placed import block_planes, child_planes, triangle_of, triangles_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import Ray
 from tracer.geometry.triangle_test import ZERO, Terms, crossing, crossing_ahead, may_cross_ahead, terms_of, towards
@@ -67,32 +70,54 @@ def _inside_block(origin, memory, block, active):
     return result
 
 
+@inlined
+def _prepare_common(origin, group, memory, block):
+    m = towards(terms_of(origin[0], origin[1], origin[2], triangles_of(block)))
+    a = memory + TERMS
+    store(a, m.nx)
+    store(a + 32, m.ny)
+    store(a + 64, m.nz)
+    store(a + 96, m.ax)
+    store(a + 128, m.ay)
+    store(a + 160, m.az)
+    store(a + 192, m.bx)
+    store(a + 224, m.by)
+    store(a + 256, m.bz)
+    store(a + 288, m.height)
+    return bits_of(may_cross_ahead(group.low, group.high, m))
+
+
 def prepare(origin, group, memory, block):
     """Do what can be done once for a block; the triangles, as bits, that may be hit."""
     raise NotImplementedError("only kernels call this")
 
 
-@overload(prepare, jit_options={"forceinline": True, "error_model": "numpy"})
+@overload(prepare, jit_options=INLINED)
 def _prepare(origin, group, memory, block):
     if isinstance(origin, types.NoneType):
-        return lambda origin, group, memory, block: (np.int64(1) << load_i32(block + COUNT)) - 1
+        return lambda origin, group, memory, block: (np.int64(1) << load_i32(block + 4 * COUNT)) - 1
+    return lambda origin, group, memory, block: _prepare_common(origin, group, memory, block)
 
-    def common(origin, group, memory, block):
-        m = towards(terms_of(origin[0], origin[1], origin[2], triangles_of(block)))
-        a = memory + TERMS
-        store(a, m.nx)
-        store(a + 32, m.ny)
-        store(a + 64, m.nz)
-        store(a + 96, m.ax)
-        store(a + 128, m.ay)
-        store(a + 160, m.az)
-        store(a + 192, m.bx)
-        store(a + 224, m.by)
-        store(a + 256, m.bz)
-        store(a + 288, m.height)
-        return bits_of(may_cross_ahead(group.low, group.high, m))
 
-    return common
+@inlined
+def _crossing_separate(memory, block, v, k):
+    dx, dy, dz = three_of_16(memory + 64 * v, DIRECTION)
+    ox, oy, oz = three_of_16(memory + 64 * v, ORIGIN)
+    m = terms_of(ox, oy, oz, triangle_of(block, k))
+    crosses, sign, u, w, area = crossing(dx, dy, dz, m)
+    return crosses, as_f32(as_i32(m.height) ^ sign), u, w, area
+
+
+@inlined
+def _crossing_common(memory, v, k):
+    a = memory + TERMS + 4 * k
+    m = Terms(
+        load_f32(a), load_f32(a + 32), load_f32(a + 64), load_f32(a + 96), load_f32(a + 128),
+        load_f32(a + 160), load_f32(a + 192), load_f32(a + 224), load_f32(a + 256), load_f32(a + 288),
+    )  # fmt: skip
+    dx, dy, dz = three_of_16(memory + 64 * v, DIRECTION)
+    crosses, u, w, area = crossing_ahead(dx, dy, dz, m)
+    return crosses, f32x16(m.height), u, w, area
 
 
 def crossing_of(origin, memory, block, v, k):
@@ -100,36 +125,11 @@ def crossing_of(origin, memory, block, v, k):
     raise NotImplementedError("only kernels call this")
 
 
-@overload(crossing_of, jit_options={"forceinline": True, "error_model": "numpy"})
+@overload(crossing_of, jit_options=INLINED)
 def _crossing_of(origin, memory, block, v, k):
     if isinstance(origin, types.NoneType):
-
-        def separate(origin, memory, block, v, k):
-            ox, oy, oz = origin_of(origin, memory, v)
-            m = terms_of(ox, oy, oz, triangle_of(block, k))
-            dx, dy, dz = _directions(memory, v)
-            crosses, sign, u, w, area = crossing(dx, dy, dz, m)
-            return crosses, as_f32(as_i32(m.height) ^ sign), u, w, area
-
-        return separate
-
-    def common(origin, memory, block, v, k):
-        a = memory + TERMS + 4 * k
-        m = Terms(
-            load_f32(a), load_f32(a + 32), load_f32(a + 64), load_f32(a + 96), load_f32(a + 128),
-            load_f32(a + 160), load_f32(a + 192), load_f32(a + 224), load_f32(a + 256), load_f32(a + 288),
-        )  # fmt: skip
-        dx, dy, dz = _directions(memory, v)
-        crosses, u, w, area = crossing_ahead(dx, dy, dz, m)
-        return crosses, f32x16(m.height), u, w, area
-
-    return common
-
-
-@inlined
-def _directions(memory, v):
-    a = memory + 64 * v
-    return load_f32x16(a + DX * ROW), load_f32x16(a + DY * ROW), load_f32x16(a + DZ * ROW)
+        return lambda origin, memory, block, v, k: _crossing_separate(memory, block, v, k)
+    return lambda origin, memory, block, v, k: _crossing_common(memory, v, k)
 
 
 @inlined
@@ -155,7 +155,7 @@ def _meet_block(origin, memory, group, block, active, nearest):
     while triangles != 0:
         k = lowest_bit(triangles)
         triangles &= triangles - 1
-        number = load_i32(block + NUMBERS + 4 * k)
+        number = load_i32(block + 4 * (PRIMITIVES + k))
         rest = active
         while rest != 0:
             v = lowest_bit(rest)
@@ -219,8 +219,8 @@ def quadric_in_child(origin, memory, a, active, trees, i, nearest):
             rest &= rest - 1
             r = memory + 64 * v + 4 * lane
             ox, oy, oz = _lane_origin(origin, memory, 16 * v + lane)
-            d = (load_f32(r + DX * ROW), load_f32(r + DY * ROW), load_f32(r + DZ * ROW))
-            ray = Ray(ox, oy, oz, d[0], d[1], d[2], load_f32(r + T_MIN * ROW), FAR)
+            dx, dy, dz = three_of(r, DIRECTION)
+            ray = Ray(ox, oy, oz, dx, dy, dz, load_f32(r + T_MIN * ROW), FAR)
             t = hit_quadric(ray, trees.quadrics, i)
             best, number = load_f32(r + T * ROW), trees.triangles + i
             inside = t >= lane_of(enter, lane) and t <= lane_of(leave, lane)

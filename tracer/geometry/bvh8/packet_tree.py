@@ -11,25 +11,31 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.bvh8.frustum import box_at, boxes_at, entering
-from tracer.geometry.bvh8.layout import QUADRIC
-from tracer.geometry.bvh8.packet import SCRATCH, lanes_inside
-from tracer.geometry.bvh8.packet_group import frusta_of, looking, put_reaches, reaches_of
+from tracer.geometry.bvh8.layout import BLOCK, CHILDREN, NODE, QUADRIC
+from tracer.geometry.bvh8.packet import ROW, SCRATCH, T_MIN, T, lanes_inside
+from tracer.geometry.bvh8.packet_group import box_at, boxes_at, entering, frusta_of, looking, put_reaches, reaches_of
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
-from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, child_planes, opened
+from tracer.geometry.bvh8.placed import child_planes, opened, root_of
 from tracer.geometry.queries import STEPS, TESTS
+from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, WIDTH
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     any_lane,
     as_f32,
+    as_i32,
     bits_of,
+    i32x16,
     largest,
+    load_f32x16,
     load_i32,
     load_i32x8,
     load_i64,
     lowest_bit,
+    maximum,
+    ones,
     prefetch,
+    select,
     store,
 )
 
@@ -39,18 +45,18 @@ STACK = 8 * (1 + (WIDTH - 1) * MAX_DEPTH)  # bytes
 @inlined
 def quadrics_in(node):
     """Which children of a node are quadrics, as bits."""
-    return bits_of(load_i32x8(node + CHILDREN) <= np.int32(~QUADRIC))
+    return bits_of(load_i32x8(node + 4 * CHILDREN) <= np.int32(~QUADRIC))
 
 
 @inlined
 def code_of(node, c):
     """The code of a node's c-th child."""
-    return np.int64(load_i32(node + CHILDREN + 4 * c))
+    return np.int64(load_i32(node + 4 * (CHILDREN + c)))
 
 
 @inlined
 def prefetch_child(trees, code):
-    """Fetch a child's memory into the cache before it is needed; for a piece, nothing is at that address."""
+    """Fetch a child's memory into the cache before it is needed; for a subtree, nothing is at that address."""
     if code < 0:
         a = trees.blocks + BLOCK * ~code
         prefetch(a + 320)
@@ -137,7 +143,7 @@ def _walk(origin, memory, group, trees, stack, occluder, nearest, counts):
             continue
         # Open a node: test its quadrics right away.
         counts[STEPS] += 1
-        node = trees.nodes + NODE * opened(trees.pieces, code)
+        node = trees.nodes + NODE * opened(trees.subtrees, code)
         enter, children = _open(memory, node, group)
         quadrics = children & quadrics_in(node)
         children ^= quadrics
@@ -183,3 +189,34 @@ def any_in_tree(origin, memory, group, trees, stack, occluder, counts):
         if looking(memory, np.float32(0)) == 0:
             return occluder
     return _walk(origin, memory, group, trees, stack, occluder, False, counts)
+
+
+CLOSED = np.int32(0x7FFFFFFF)  # key of a child that a ray does not enter: no distance at all
+
+
+@inlined
+def open_rays(memory, v):
+    """How many rays of a vector there are to trace."""
+    a = memory + 64 * v
+    return ones(bits_of(load_f32x16(a + T * ROW) > load_f32x16(a + T_MIN * ROW)))
+
+
+@inlined
+def open_root(memory, v, trees, first, room, nearest, counts):
+    """Test sixteen rays against the children of a root and write a row of keys for each child.
+
+    A key is the bits of the distance at which the ray enters the child, the lowest four replaced by the child's
+    number, counted from `first` (which only makes the distance less); or CLOSED.  Quadrics among the children are
+    tested right away."""
+    root = root_of(trees)
+    quadrics = quadrics_in(root)
+    for c in range(WIDTH):
+        box, key = root + 4 * c, i32x16(CLOSED)
+        if (quadrics >> c) & 1:
+            counts[TESTS] += 1
+            quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(root, c) - QUADRIC, nearest)
+        else:
+            enter, leave = lanes_inside(None, memory, v, child_planes(box))
+            distance = as_i32(maximum(enter, ZERO)) & np.int32(~15)
+            key = select(enter <= leave, distance | np.int32(first + c), CLOSED)
+        store(room + 64 * (first + c), key)

@@ -1,4 +1,4 @@
-"""What of a large 8-wide tree, whose pieces are built where rays arrive, lies at points of space
+"""What of a large 8-wide tree, whose subtrees are built where rays arrive, lies at points of space
 (`tracer.geometry.tree_parts`).
 
 Boxes overlap, and most of space lies in inner nodes alone: the part at a point is the deepest box around it.
@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import BVH8
-from tracer.geometry.bvh8.layout import CHILDREN, COUNT, PIECE, QUADRIC
+from tracer.geometry.bvh8.layout import CHILDREN, COUNT, QUADRIC, SUBTREE
 from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import kernel
 
 if TYPE_CHECKING:
-    from tracer.geometry.bvh8.pieces import PiecewiseTree
+    from tracer.geometry.bvh8.subtrees import LargeTree
 
 _WAITING = 1024  # room for nodes that are still to be entered
 
@@ -29,14 +29,14 @@ _WAITING = 1024  # room for nodes that are still to be entered
 @kernel
 def _locate(nodes, codes, counts, table, across, points, numbers, owners, levels, built, widths, held):
     """Write what lies at points (n, 3): nodes (m, 64) float32, the same memory as int32, codes, and that of the blocks,
-    counts; table (1 + pieces,) int64 as rays read it."""
-    waiting = np.empty((_WAITING, 3), np.int64)  # nodes, their levels, and the pieces that they belong to
+    counts; table (1 + subtrees,) int64 as rays read it."""
+    waiting = np.empty((_WAITING, 3), np.int64)  # nodes, their levels, and the subtrees that they belong to
     for i in range(len(points)):
         best, left = 0, 1
         waiting[0, 0], waiting[0, 1], waiting[0, 2] = 0, 0, -1
         while left > 0:
             left -= 1
-            node, level, piece = waiting[left, 0], waiting[left, 1] + 1, waiting[left, 2]
+            node, level, subtree = waiting[left, 0], waiting[left, 1] + 1, waiting[left, 2]
             for c in range(WIDTH):
                 inside, width = True, np.float32(np.inf)
                 for k in range(3):
@@ -46,10 +46,10 @@ def _locate(nodes, codes, counts, table, across, points, numbers, owners, levels
                         width = min(width, high - low)
                 if not inside:
                     continue
-                code, owner = np.int64(codes[node, CHILDREN + c]), piece
+                code, owner = np.int64(codes[node, CHILDREN + c]), subtree
                 child, there = code, 1
-                if code >= PIECE:
-                    owner = code - PIECE
+                if code >= SUBTREE:
+                    owner = code - SUBTREE
                     child = table[1 + owner]
                     there = 1 if child >= 0 else 0
                 if level > best:
@@ -63,12 +63,12 @@ def _locate(nodes, codes, counts, table, across, points, numbers, owners, levels
                     left += 1
 
 
-class PieceParts:
+class SubtreeParts:
     """See `TreeParts`; it shows what never moves."""
 
-    name, owner = BVH8, "piece"
+    name, owner = BVH8, "subtree"
 
-    def __init__(self, tree: PiecewiseTree, primitives: int) -> None:
+    def __init__(self, tree: LargeTree, primitives: int) -> None:
         self._tree = weakref.ref(tree)
         self.levels = round(math.log2(max(primitives, 8)) / 2)  # half-full nodes of eight children, down to leaves
 

@@ -2,53 +2,58 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
-from tracer.geometry.bvh8 import layout
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.geometry.bvh8.layout import BOX, NODE, SUBTREE
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY
+from tracer.geometry.shared_memory import built
 from tracer.geometry.triangle_test import Triangle
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import call_entry, f32_at, load_f32, load_f32x8, load_i64
+from tracer.simd import load_f32, load_f32x8, load_i64
+from tracer.simd.records import F32At, block_size, pack, reading
 
-NODE, BLOCK = 4 * layout.NODE_SIZE, 4 * layout.BLOCK_SIZE  # bytes
-CHILDREN = 4 * layout.CHILDREN  # offset of the children's codes in a node
-NUMBERS, BOX, COUNT = 4 * layout.PRIMITIVES, 4 * layout.BOX, 4 * layout.COUNT  # offsets in a block
-
-# A placed world, as offsets in bytes: for each of its trees the addresses of nodes and blocks and the number of the
-# root; then the address of the quadrics as seen from the world, the number of triangles, the trees that are worth
-# asking, as bits: the static one, and those of the others that hold anything; how many rays may go together; and the
-# address of the static tree's table of pieces, or 0.
-NODES, BLOCKS, ROOT, TREE = 0, 8, 16, 24
-QUADRICS, TRIANGLE_COUNT, TREES, TOGETHER, PIECES = range(3 * TREE, 3 * TREE + 40, 8)
 STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
 STATIC_TREES, DYNAMIC_TREES = 1 << STATIC_TREE | 1 << RESTING_TREE, 1 << MOVING_TREE  # as bits, by what is asked for
 
 
 class PlacedTree(NamedTuple):
-    """One of the three trees: the addresses of its nodes and blocks, its root's number, a pointer to the quadrics as
-    seen from the world, the number of triangles, which is also the number of the first quadric, and the address of the
-    table of pieces."""
+    """One of the three trees: the addresses of its nodes and blocks, and its root's number; the quadrics as seen from
+    the world; the number of triangles, which is also the number of the first quadric; and the address of the table of
+    subtrees, or 0."""
 
-    nodes: Any
-    blocks: Any
-    root: Any
-    quadrics: Any
-    triangles: Any
-    pieces: Any
+    nodes: int
+    blocks: int
+    root: int
+    quadrics: F32At
+    triangles: int
+    subtrees: int
+
+
+class World8(NamedTuple):
+    """A placed world: the trees that are worth asking, as bits, which are the static one and those of the others that
+    hold anything; and how many rays may go together.  The three trees follow it in memory."""
+
+    trees: int
+    together: int
+
+
+WORLD, TREE = block_size(World8), block_size(PlacedTree)
+read_world, _read_tree = reading(World8), reading(PlacedTree)
+
+
+def pack_world(world: World8, trees: Sequence[PlacedTree]) -> NDArray[np.int64]:
+    """A placed world as a block; whoever keeps it keeps all that has an address in it."""
+    return np.concatenate([pack(world), *(pack(tree) for tree in trees)])
 
 
 @inlined
 def tree_of(data, which):
     """One of the three trees of the world that `data` is the address of."""
-    a = data + TREE * which
-    return PlacedTree(
-        load_i64(a + NODES),
-        load_i64(a + BLOCKS),
-        load_i64(a + ROOT),
-        f32_at(load_i64(data + QUADRICS)),
-        load_i64(data + TRIANGLE_COUNT),
-        load_i64(data + PIECES),
-    )
+    return _read_tree(data + WORLD + TREE * which)
 
 
 @inlined
@@ -58,19 +63,16 @@ def root_of(tree):
 
 
 @subkernel
-def root_of_piece(pieces, piece):
-    """The number of the root of a piece, which is built now if it was not; `pieces` is the address of a table, int64:
-    the address of what builds a piece, and then of each piece the number of its root, or -1."""
-    place = pieces + 8 * (1 + piece)
-    if load_i64(place) < 0:
-        call_entry(load_i64(pieces), piece, 0, 0, 0, 0)
-    return load_i64(place)
+def root_of_subtree(subtrees, number):
+    """The number of the root of a subtree, which is built now if it was not; `subtrees` is the address of a table of
+    int64: the address of what builds a subtree, and then of each the number of its root, or UNBUILT."""
+    return built(subtrees + 8 * (1 + number), load_i64(subtrees), number, 0)
 
 
 @inlined
-def opened(pieces, code):
-    """The number of the node that the code of a child that is no leaf stands for (see `layout.PIECE`)."""
-    return root_of_piece(pieces, code - layout.PIECE) if code >= layout.PIECE else code
+def opened(subtrees, code):
+    """The number of the node that the code of a child that is no leaf stands for (see `layout.SUBTREE`)."""
+    return root_of_subtree(subtrees, code - SUBTREE) if code >= SUBTREE else code
 
 
 @inlined
@@ -78,7 +80,7 @@ def trees_asked(data, which):
     """Bits of the trees that hold STATIC_GEOMETRY or DYNAMIC_OBJECTS: an object that rests counts as static."""
     static, moving = which & STATIC_GEOMETRY, which & DYNAMIC_OBJECTS
     asked = static * (STATIC_TREES // STATIC_GEOMETRY) | moving * (DYNAMIC_TREES // DYNAMIC_OBJECTS)
-    return load_i64(data + TREES) & asked
+    return read_world(data).trees & asked
 
 
 @inlined
@@ -93,7 +95,7 @@ def child_planes(box):
 @inlined
 def block_planes(block):
     """Planes of a block's box."""
-    a = block + BOX
+    a = block + 4 * BOX
     return load_f32(a), load_f32(a + 4), load_f32(a + 8), load_f32(a + 12), load_f32(a + 16), load_f32(a + 20)
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.layout import BLOCK_SIZE, BOX, COUNT, EMPTY, NODE_SIZE, PRIMITIVES
+from tracer.geometry.bvh8.layout import BLOCK, BOX, COUNT, EMPTY, NODE, PRIMITIVES
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
@@ -31,7 +31,7 @@ from tracer.simd import (
     store,
 )
 
-NODE_BYTES, BLOCK_BYTES, CORNER_BYTES, LANES = 4 * NODE_SIZE, 4 * BLOCK_SIZE, 4 * 9 * WIDTH, 4 * WIDTH
+CORNER_BYTES, LANES = 4 * 9 * WIDTH, 4 * WIDTH
 ROW = 4 * 9  # bytes of a triangle
 
 
@@ -64,7 +64,7 @@ def fill_blocks(blocks, rows, first, last):
     The boxes that are stored are exact.
     """
     extent, triangles = np.float32(0), address_of(rows)
-    for block in range(address_of(blocks) + BLOCK_BYTES * first, address_of(blocks) + BLOCK_BYTES * last, BLOCK_BYTES):
+    for block in range(address_of(blocks) + BLOCK * first, address_of(blocks) + BLOCK * last, BLOCK):
         for k in range(3):
             low, high = np.float32(np.inf), np.float32(-np.inf)
             for lane in range(load_i32(block + 4 * COUNT)):
@@ -88,7 +88,7 @@ def gather_corners(local, blocks, corners, offset, first, last):
     Row i of corners (d, 9) are those of triangle offset + i.  Unused lanes repeat the first triangle.
     """
     target = address_of(local) + CORNER_BYTES * first
-    for block in range(address_of(blocks) + BLOCK_BYTES * first, address_of(blocks) + BLOCK_BYTES * last, BLOCK_BYTES):
+    for block in range(address_of(blocks) + BLOCK * first, address_of(blocks) + BLOCK * last, BLOCK):
         count = load_i32(block + 4 * COUNT)
         for lane in range(WIDTH):
             number = load_i32(block + 4 * (PRIMITIVES + (lane if lane < count else 0)))
@@ -113,7 +113,7 @@ def move_blocks(blocks, local, matrix, first, last):
     """
     extent, nothing = np.float32(0), f32x8(0)
     corners = local + CORNER_BYTES * first
-    for block in range(blocks + BLOCK_BYTES * first, blocks + BLOCK_BYTES * last, BLOCK_BYTES):
+    for block in range(blocks + BLOCK * first, blocks + BLOCK * last, BLOCK):
         used = mask8((1 << load_i32(block + 4 * COUNT)) - 1)
         for k in range(3):
             m = matrix + 16 * k
@@ -136,7 +136,7 @@ def move_blocks(blocks, local, matrix, first, last):
 def _place_of(nodes, roots, link):
     """The address that the box of a link is stored at, and the distance in bytes between its six numbers."""
     if link >= 0:
-        return nodes + NODE_BYTES * (link // WIDTH) + 4 * (link % WIDTH), LANES
+        return nodes + NODE * (link // WIDTH) + 4 * (link % WIDTH), LANES
     return roots + 24 * ~link, 4
 
 
@@ -154,7 +154,7 @@ def pad_box(nodes, roots, link, box, padding):
 def unite(nodes, roots, links, first, last):
     """Store the boxes around nodes first to last - 1 in their parents, children before parents."""
     for i in range(last - 1, first - 1, -1):
-        node = nodes + NODE_BYTES * i
+        node = nodes + NODE * i
         place, stride = _place_of(nodes, roots, load_i32(links + 4 * i))
         for k in range(3):
             upper = load_f32x8(node + LANES * (k + 3))
@@ -168,7 +168,7 @@ def pad_blocks(tree, links, padding, first, last):
     nodes, blocks, roots = address_of(tree.nodes), address_of(tree.blocks), address_of(links.roots)
     parents = address_of(links.blocks)
     for i in range(first, last):
-        pad_box(nodes, roots, load_i32(parents + 4 * i), blocks + BLOCK_BYTES * i + 4 * BOX, padding)
+        pad_box(nodes, roots, load_i32(parents + 4 * i), blocks + BLOCK * i + 4 * BOX, padding)
 
 
 @kernel

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.bvh8.eight_wide import any_in_block, any_quadric, children_of, single_ray_at
+from tracer.geometry.bvh8.layout import BLOCK, NODE
 from tracer.geometry.bvh8.packet import BLOCKED_T, NUMBER, ROW, T, mark_static
-from tracer.geometry.bvh8.packet_tree import STACK, code_of, quadrics_in
-from tracer.geometry.bvh8.placed import BLOCK, MOVING_TREE, NODE, opened, root_of, tree_of, trees_asked
-from tracer.geometry.bvh8.roots import CLOSED, open_rays, open_root
+from tracer.geometry.bvh8.packet_tree import CLOSED, STACK, code_of, open_rays, open_root, quadrics_in
+from tracer.geometry.bvh8.placed import MOVING_TREE, opened, root_of, tree_of, trees_asked
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import MISS
 from tracer.geometry.wide_tree.topology import WIDTH
@@ -73,7 +73,7 @@ def _any_below(a, code, trees, stack, counts):
                 return
             continue
         counts[STEPS] += 1
-        node = trees.nodes + NODE * opened(trees.pieces, code)
+        node = trees.nodes + NODE * opened(trees.subtrees, code)
         enter, leave = children_of(node, r, far)
         children = bits_of(enter <= leave)
         quadrics = children & quadrics_in(node)

@@ -16,11 +16,10 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.bvh8.eight_wide import Best, children_at, nearest_in_block, nearest_quadric, single_ray_at
-from tracer.geometry.bvh8.layout import PIECE
+from tracer.geometry.bvh8.layout import BLOCK, CHILDREN, NODE, SUBTREE
 from tracer.geometry.bvh8.packet import LANES, NUMBER, PACKET, ROW, T, U, V
-from tracer.geometry.bvh8.packet_tree import STACK, code_of, quadrics_in
-from tracer.geometry.bvh8.placed import BLOCK, CHILDREN, NODE, PIECES, TREES, root_of, root_of_piece, tree_of
-from tracer.geometry.bvh8.roots import CLOSED, open_rays, open_root
+from tracer.geometry.bvh8.packet_tree import CLOSED, STACK, code_of, open_rays, open_root, quadrics_in
+from tracer.geometry.bvh8.placed import STATIC_TREE, read_world, root_of, root_of_subtree, tree_of
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import WIDTH
@@ -68,7 +67,7 @@ STREAM_MEMORY = STACKS + PACKET * STACK
 @inlined
 def _describe(stream, trees, second):
     """Note where one of the two trees lies, and the codes of its root's children."""
-    store(stream + CODES + 32 * second, load_i32x8(root_of(trees) + CHILDREN))
+    store(stream + CODES + 32 * second, load_i32x8(root_of(trees) + 4 * CHILDREN))
     store(stream + PLACES + 16 * second, trees.nodes)
     store(stream + PLACES + 16 * second + 8, trees.blocks)
 
@@ -190,13 +189,13 @@ def _nearest_of(stream, ray, node, children, enter):
 def _open_nodes(memory, data, stream, back, nodes, leaves, counts):
     """Open the nodes that wait: each ray goes on to the nearest child it enters, or back if it enters none.  How many
     are to go back then, and how many nodes and leaves wait."""
-    opened, nodes = nodes, np.int64(0)
+    opened, nodes, subtrees = nodes, np.int64(0), tree_of(data, STATIC_TREE).subtrees
     for i in range(opened):
         waiting = load_i64(stream + NODES + 8 * i)
         ray = waiting & RAY
         number = waiting >> 32
-        if number >= PIECE:
-            number = root_of_piece(load_i64(data + PIECES), number - PIECE)
+        if number >= SUBTREE:
+            number = root_of_subtree(subtrees, number - SUBTREE)
         a, node = memory + 4 * ray, load_i64(_place(stream, waiting)) + NODE * number
         enter, leave = children_at(node, a)
         children = bits_of(enter <= leave)
@@ -236,7 +235,7 @@ def _test_leaves(memory, stream, back, leaves):
 @subkernel
 def closest_in_stream(memory, vectors, data, stream, counts):
     """Nearest hits of the rays of some of a packet's vectors, given as bits."""
-    todo = load_i64(data + TREES)
+    todo = read_world(data).trees
     while todo != 0:
         # Take two trees at a time: a key has room for the children of no more.
         first = lowest_bit(todo)

@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.boxes import NO_BOX, PADDING, union_of
 from tracer.geometry.building import watched
-from tracer.geometry.bvh8 import pieces, traverse
+from tracer.geometry.bvh8 import subtrees, traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
-from tracer.geometry.bvh8.parts import PieceParts
-from tracer.geometry.bvh8.pieces import PiecewiseTree
-from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE
+from tracer.geometry.bvh8.parts import SubtreeParts
+from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE, PlacedTree, World8, pack_world
+from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.poses import Poses, products
 from tracer.geometry.primitives import Primitives, WorldTriangles, triangle_rows
 from tracer.geometry.queries import Placed
-from tracer.geometry.structure import BuiltPart
+from tracer.geometry.structure import BuiltPart, placed_by
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.runtime.parallel import thread_count
@@ -49,13 +49,13 @@ class Bvh8:
         boxes = primitives.quadric_boxes(quadrics, primitives.to_object[quadrics])
         count = triangles.stop + quadrics.stop
         rows = primitives.triangles[triangles]
-        self._pieces: PiecewiseTree | None = None
-        self._lazy = lazy and count > pieces.LARGE
+        self._large: LargeTree | None = None
+        self._lazy = lazy and count > subtrees.LARGE
 
         def build(control: NDArray[np.int64]) -> Tree:
-            if count <= pieces.LARGE:
+            if count <= subtrees.LARGE:
                 return build_tree(rows, boxes, control, thread_count())
-            self._pieces = large = PiecewiseTree(rows, boxes, control, thread_count())
+            self._large = large = LargeTree(rows, boxes, control, thread_count())
             if not lazy:
                 large.build_all(control, thread_count())
             return large.tree
@@ -72,9 +72,9 @@ class Bvh8:
     def make_ready() -> None:
         """Compile, or load, what only large trees need."""
         triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
-        tree = PiecewiseTree(triangle, box, np.zeros(2, np.int64), 1)
+        tree = LargeTree(triangle, box, np.zeros(2, np.int64), 1)
         tree.build_all()
-        PieceParts(tree, 1).at(box[:, :3].copy(), 0)
+        SubtreeParts(tree, 1).at(box[:, :3].copy(), 0)
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -125,24 +125,17 @@ class Bvh8:
         self.dynamic = self._object_trees.tree
         there_now = [tree_box(self.dynamic, root) for root in (0, self.resting_root)]
         self.extent = float(np.abs(there_now).max())
-        roots = ((self.static, 0), (self.dynamic, self.resting_root), (self.dynamic, 0))
-        trees = [word for tree, root in roots for word in (tree.nodes.ctypes.data, tree.blocks.ctypes.data, root)]
         there = 1 << STATIC_TREE | bool(resting.any()) << RESTING_TREE | bool(moving.any()) << MOVING_TREE
-        self._there = there
-        triangles, quadrics = len(primitives.triangles), self.world_quadrics.ctypes.data
-        table = 0 if self._pieces is None else self._pieces.table.ctypes.data
-        self._data = np.array([*trees, quadrics, triangles, there, self.together, table], np.int64)
-        return Placed(
-            primitives.triangles,
-            primitives.quadrics,
-            poses.to_object.reshape(-1, 12).astype(np.float32),
-            primitives.object_of,
-            self.closest.address,
-            self.any_hit.address,
-            self._data.ctypes.data,
-            bool(moving.any()),
-            there_now[0],
-        )
+        table, count = 0 if self._large is None else self._large.table.ctypes.data, len(primitives.triangles)
+        trees = [
+            PlacedTree(tree.nodes.ctypes.data, tree.blocks.ctypes.data, root, self.world_quadrics, count, subtrees)
+            for tree, root, subtrees in (
+                (self.static, 0, table), (self.dynamic, self.resting_root, 0), (self.dynamic, 0, 0)
+            )
+        ]  # fmt: skip
+        self._data = pack_world(World8(there, self.together), trees)
+        to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
+        return placed_by(self, primitives, to_object, self._data, bool(moving.any()), there_now[0])
 
     def _move_quadrics(self, poses: Poses) -> None:
         """Find maps from the world and boxes in the world for dynamic quadrics."""
@@ -172,30 +165,30 @@ class Bvh8:
         return WorldTriangles(rows, np.zeros(count, np.float32), boxes)
 
     def build(self) -> None:
-        """Build the pieces that wait for rays, in all threads."""
-        if self._pieces is not None:
-            self._pieces.build_all(threads=thread_count())
+        """Build the subtrees that wait for rays, in all threads."""
+        if self._large is not None:
+            self._large.build_all(threads=thread_count())
 
     def _static_blocks(self) -> Float32:
         """The blocks of what never moves, all of which is built now."""
         self.build()
-        return (self.static if self._pieces is None else self._pieces.used).blocks
+        return (self.static if self._large is None else self._large.used).blocks
 
     def built(self) -> BuiltPart | None:
         """What rays have had built of a large tree of what never moves, with the trees of all that moves."""
-        if self._pieces is None or not self._lazy:
+        if self._large is None or not self._lazy:
             return None
-        large, moving, total = self._pieces, self._object_trees.tree, len(self._primitives.object_of)
+        large, moving, total = self._large, self._object_trees.tree, len(self._primitives.object_of)
         large.check()
         starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
         size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
         return BuiltPart(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
 
-    def parts_built(self) -> PieceParts | None:
-        """Which pieces of what never moves are built, and how."""
-        if self._pieces is None or not self._lazy:
+    def parts_built(self) -> SubtreeParts | None:
+        """Which subtrees of what never moves are built, and how."""
+        if self._large is None or not self._lazy:
             return None
-        return PieceParts(self._pieces, len(self._primitives.object_of))
+        return SubtreeParts(self._large, len(self._primitives.object_of))
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

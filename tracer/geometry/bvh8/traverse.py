@@ -22,10 +22,11 @@ from tracer.geometry.bvh8.packet import (
 )
 from tracer.geometry.bvh8.packet_group import group_of, lead_of
 from tracer.geometry.bvh8.packet_tree import STACK, any_in_tree, closest_in_tree
-from tracer.geometry.bvh8.placed import MOVING_TREE, TOGETHER, TREES, tree_of, trees_asked
+from tracer.geometry.bvh8.placed import MOVING_TREE, read_world, tree_of, trees_asked
 from tracer.geometry.bvh8.single_ray import ROOM, SINGLE_MEMORY, any_one_by_one
 from tracer.geometry.bvh8.stream import STREAM_MEMORY, closest_in_stream
-from tracer.geometry.queries import WHICH
+from tracer.geometry.queries import read_batch
+from tracer.geometry.shared_memory import allocate, free
 from tracer.runtime.kernels import entry, inlined
 from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
 
@@ -58,10 +59,10 @@ def _trace(data, batch, first, last, counts, nearest):
 
     `nearest` is a constant, so that either query is compiled without the other."""
     memory, stack, count = local_memory(MEMORY), local_memory(STACK), i64_at(counts)
-    stream = local_memory(STREAM_MEMORY) if nearest else local_memory(SINGLE_MEMORY)
-    which = load_i64(batch + WHICH)
-    trees = load_i64(data + TREES) if nearest else trees_asked(data, which)
-    together_at_most = load_i64(data + TOGETHER)
+    alone = local_memory(SINGLE_MEMORY)
+    stream = np.int64(0)  # half a megabyte, where it is wanted: more than the stack of some systems' threads can take
+    which, world = read_batch(batch).which, read_world(data)
+    trees, together_at_most = world.trees if nearest else trees_asked(data, which), world.together
     size = PACKET if together_at_most == 1 else together_at_most  # rays that go alone are read as many at a time
     occluders = local_memory(24)  # the last block met in each tree; block 0 is empty
     for number in range(3):
@@ -79,7 +80,7 @@ def _trace(data, batch, first, last, counts, nearest):
                 if nearest:
                     apart |= np.int64(1) << v
                 else:
-                    any_one_by_one(memory, v, data, which, stream + ROOM, count)
+                    any_one_by_one(memory, v, data, which, alone + ROOM, count)
                 todo &= todo - 1
                 continue
             # Send it through each tree, with all vectors that go the same way.
@@ -99,12 +100,16 @@ def _trace(data, batch, first, last, counts, nearest):
                         mark_static(memory, group.vectors)
             todo &= ~group.vectors
         if nearest and apart != 0:
-            closest_in_stream(memory, apart, data, stream, count)
+            if stream == 0:
+                stream = allocate(STREAM_MEMORY + 63)
+            closest_in_stream(memory, apart, data, (stream + 63) & ~63, count)
         # Write the answers.
         if nearest:
             keep_hits(memory, batch, start, n)
         else:
             keep_blocked(memory, batch, start, n)
+    if stream != 0:
+        free(stream)
 
 
 @entry

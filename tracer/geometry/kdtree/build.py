@@ -16,8 +16,8 @@ import numpy as np
 from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.kdtree.tree import LEAF, MAX_DEPTH, Trees
-from tracer.geometry.memory import float_bits
 from tracer.runtime.kernels import kernel, subkernel
+from tracer.simd import as_i32
 
 TRAVERSAL_COST = 1.0
 INTERSECTION_COST = 0.8  # measured: below 1.4 a third fewer nodes, built faster, and frames no slower
@@ -284,7 +284,7 @@ def build_over(boxes, bounds, triangles, control):
         todo[pending + 1, 0], todo[pending + 1, 1], todo[pending + 1, 2] = lower, depth + 1, -1
         todo_box[pending + 1, axis + 3] = plane
         pending += 2
-        words[2 * node], words[2 * node + 1] = float_bits(plane), axis
+        words[2 * node], words[2 * node + 1] = as_i32(np.float32(plane)), axis
     return words[: 2 * node_count], items[:item_count]
 
 

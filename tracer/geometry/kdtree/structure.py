@@ -12,17 +12,62 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.boxes import transform_boxes, triangle_boxes
+from tracer.geometry.accelerators import MOST_TOGETHER
+from tracer.geometry.boxes import OUTWARDS, transform_boxes, triangle_boxes
 from tracer.geometry.building import in_chunks, watched
 from tracer.geometry.kdtree import traverse
 from tracer.geometry.kdtree.build import bounds_of, build_tree
-from tracer.geometry.kdtree.object_space import InObjectSpace
-from tracer.geometry.kdtree.tree import LEAF, Parts, Trees
+from tracer.geometry.kdtree.tree import LEAF, KdWorld, Top, Trees
 from tracer.geometry.poses import Poses
-from tracer.geometry.primitives import Primitives
+from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
-from tracer.scene.arrays import Float32
+from tracer.geometry.structure import placed_by
+from tracer.scene.arrays import Float32, Float64
 from tracer.scene.model import Progress
+from tracer.simd.records import pack
+
+TRANSFORMED = 8 * 2.0**-24  # of the coordinates: by so much rays are wrong that are transformed to an object's space
+EVEN = 1.1  # ratio of an object's axes at most, or else a little in its space may be much in the world
+
+
+class InObjectSpace:
+    """Primitives are tested one by one, each in the space of its object, and nothing but its own test decides."""
+
+    together = MOST_TOGETHER  # of which they take no note: they trace rays one by one
+    extent = 0.0  # boxes of dynamic objects are not padded
+    hit_padding = 1e30  # and a hit need not lie in any
+
+    def __init__(self, primitives: Primitives) -> None:
+        self._primitives = primitives
+
+    def certain(self, poses: Poses) -> NDArray[np.bool_]:
+        """Those that are not flattened, stretched or sheared.
+
+        What a ray is wrong by in an object's space is more in the world by the ratio of its longest to its shortest
+        axis, and the errors of the triangle test there by its square."""
+        scales = np.linalg.svd(poses.to_world[:, :, :3], compute_uv=False)
+        return scales[:, 0] <= EVEN * scales[:, 2]
+
+    def triangles_of(self, index: int, to_world: Float64) -> WorldTriangles:
+        """The triangles of an object that to_world (3, 4) takes to the world; rays go to its space in float32.
+
+        Blurs and boxes hold of objects that are `certain`."""
+        local = self._primitives.triangles[self._primitives.triangles_of(index)]
+        near = triangle_boxes(local).astype(np.float64)  # a hit lies no further outside than the box is wide
+        near += (near[:, 3:] - near[:, :3]).max(1, initial=0.0)[:, None] * 1.0001 * OUTWARDS
+        if index == 0:
+            return WorldTriangles(local, np.zeros(len(local), np.float32), near.astype(np.float32))
+        linear = to_world[:, :3]
+        world = local.astype(np.float64).reshape(-1, 3, 3) @ linear.T
+        world[:, 0] += to_world[:, 3]
+        scales = np.linalg.svd(linear, compute_uv=False)
+        reach = np.abs(local).max(initial=0.0) * 2 * scales[0]
+        reach += np.abs(to_world[:, 3]).max() + np.abs(world).max(initial=0.0)
+        blurs = np.full(len(local), TRANSFORMED * reach, np.float32)
+        boxes = transform_boxes(near, np.broadcast_to(to_world, (len(local), 3, 4)))
+        boxes = boxes + TRANSFORMED * reach * OUTWARDS
+        return WorldTriangles(world.reshape(-1, 9).astype(np.float32), blurs, boxes.astype(np.float32))
+
 
 Tree = tuple[Trees, NDArray[np.float32]]  # with the box around it
 
@@ -99,26 +144,21 @@ class KdTree(InObjectSpace):
         boxes = np.stack([box for _, box in self._trees])
         resting_tree, resting_box = self._top(resting, boxes, poses)
         moving_tree, moving_box = self._top(moving, boxes, poses)
-        self.parts = parts = Parts(
+        to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
+        self.world = KdWorld(
             primitives.triangles,
+            len(primitives.triangles),
             primitives.quadrics,
             self._static,
             self._dynamic,
-            resting_tree,
-            moving_tree,
+            Top(resting_tree, resting_box, bool(resting.any())),
+            Top(moving_tree, moving_box, bool(moving.any())),
             self._roots,
             boxes,
-            poses.to_object.reshape(-1, 12).astype(np.float32),
-            resting_box,
-            moving_box,
+            to_object,
         )
-        arrays = [a for part in parts for a in ((part.words, part.items) if isinstance(part, Trees) else (part,))]
-        there = len(primitives.triangles), resting.any(), moving.any()
-        self._data = np.array([*(a.ctypes.data for a in arrays), *there], np.int64)
-        return Placed(
-            primitives.triangles, primitives.quadrics, parts.to_object, primitives.object_of, self.closest.address,
-            self.any_hit.address, self._data.ctypes.data, bool(moving.any()), moving_box,
-        )  # fmt: skip
+        self._data = pack(self.world)
+        return placed_by(self, primitives, to_object, self._data, bool(moving.any()), moving_box)
 
     def build(self) -> None:
         """Nothing waits for rays."""
@@ -131,5 +171,5 @@ class KdTree(InObjectSpace):
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        boxes = np.stack([self.parts.boxes[0], self.parts.resting_box, self.parts.moving_box])
+        boxes = np.stack([self.world.boxes[0], self.world.resting.box, self.world.moving.box])
         return bounds_of(boxes[boxes[:, 0] <= boxes[:, 3]])

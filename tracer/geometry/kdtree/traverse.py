@@ -14,101 +14,37 @@ import numpy as np
 
 from tracer.geometry.boxes import hit_box
 from tracer.geometry.intersect import ZERO, transform_ray
-from tracer.geometry.kdtree.nearest import Best, between, no_hit, walk_leaves
-from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, next_leaf, push
+from tracer.geometry.kdtree.tree import STACK_SIZE, Best, KdWorld, Stack, between, next_leaf, no_hit, push, walk_leaves
 from tracer.geometry.memory import local_float32, local_int32
-from tracer.geometry.queries import (
-    BLOCKED,
-    DYNAMIC_OBJECTS,
-    HIT_PRIMITIVE,
-    HIT_T,
-    HIT_U,
-    HIT_V,
-    OCCLUDER,
-    STATIC_GEOMETRY,
-    STEPS,
-    WHICH,
-    rays_of,
-)
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, STEPS, rays_of, read_batch
 from tracer.geometry.rays import INFINITY, MISS, ray_at
 from tracer.runtime.kernels import entry, inlined, subkernel
-from tracer.simd import f32_at, i32_at, i64_at, load_i64, u8_at
+from tracer.simd import f32_at, i32_at, i64_at, u8_at
+from tracer.simd.records import reading
 
 SLACK = np.float32(1e-5)  # relative: by so much a ray's interval in an object is wider than in the leaf that names it
 
 
-# A placed world as the entries get it: the address, an int64 each, of everything in Parts; then the number of
-# triangles, whether anything rests, and whether anything moves.
-(
-    TRIANGLES, QUADRICS, STATIC_WORDS, STATIC_ITEMS, DYNAMIC_WORDS, DYNAMIC_ITEMS, RESTING_WORDS, RESTING_ITEMS,
-    MOVING_WORDS, MOVING_ITEMS, ROOTS, BOXES, TO_OBJECT, RESTING_BOX, MOVING_BOX, TRIANGLE_COUNT,
-    HAS_RESTING, HAS_MOVING,
-) = range(0, 144, 8)  # fmt: skip
-
-
-class _Top(NamedTuple):
-    """A tree over objects, the box around it, and whether there is anything in it."""
-
-    trees: Trees
-    box: Any
-    there: Any
-
-
 class _Search(NamedTuple):
-    """A placed world as pointers, and the memory that the walk of one ray needs."""
+    """A placed world, as pointers, and the memory that the walk of one ray needs."""
 
-    triangles: Any
-    triangle_count: int
-    quadrics: Any
-    static: Trees
-    dynamic: Trees
-    resting: _Top
-    moving: _Top
-    roots: Any
-    boxes: Any
-    to_object: Any
+    world: Any
     stack: Stack
     top_stack: Stack
     counts: Any
 
 
-@inlined
-def _trees(data, words, items):
-    return Trees(i32_at(load_i64(data + words)), f32_at(load_i64(data + words)), i32_at(load_i64(data + items)))
-
-
-@inlined
-def _top(data, words, items, box, there):
-    return _Top(_trees(data, words, items), f32_at(load_i64(data + box)), load_i64(data + there) != 0)
-
-
-@inlined
-def _search(data, stack, top_stack, counts):
-    return _Search(
-        f32_at(load_i64(data + TRIANGLES)),
-        load_i64(data + TRIANGLE_COUNT),
-        f32_at(load_i64(data + QUADRICS)),
-        _trees(data, STATIC_WORDS, STATIC_ITEMS),
-        _trees(data, DYNAMIC_WORDS, DYNAMIC_ITEMS),
-        _top(data, RESTING_WORDS, RESTING_ITEMS, RESTING_BOX, HAS_RESTING),
-        _top(data, MOVING_WORDS, MOVING_ITEMS, MOVING_BOX, HAS_MOVING),
-        i32_at(load_i64(data + ROOTS)),
-        f32_at(load_i64(data + BOXES)),
-        f32_at(load_i64(data + TO_OBJECT)),
-        stack,
-        top_stack,
-        i64_at(counts),
-    )
+_read_world = reading(KdWorld)
 
 
 @inlined
 def _walk(s, trees, o, ray, enter, leave, best, nearest):
     """The nearest hit in object o if it is nearer than `best`; or, where not the `nearest` is wanted, the first."""
     # Start at the root with the ray's interval in the object's box.
-    near, far = hit_box(between(ray, enter, leave), s.boxes, o)
+    near, far = hit_box(between(ray, enter, leave), s.world.boxes, o)
     if near > far:
         return best
-    pending = push(s.stack, 0, s.roots[o], near, far)
+    pending = push(s.stack, 0, s.world.roots[o], near, far)
     return walk_leaves(s, trees, ray, pending, best, nearest)
 
 
@@ -144,11 +80,11 @@ def _walk_top(s, top, ray, best, nearest):
         enter, leave = _piece(leaf)
         for i in range(leaf.first, leaf.first + leaf.size):
             o = top.trees.items[i]
-            local = transform_ray(ray, s.to_object, o, 12)
+            local = transform_ray(ray, s.world.to_object, o, 12)
             if nearest:
-                best = _closest_in_tree(s, s.dynamic, o, local, enter, min(leave, best.t), best)
+                best = _closest_in_tree(s, s.world.dynamic, o, local, enter, min(leave, best.t), best)
             else:
-                primitive = _any_in_tree(s, s.dynamic, o, local, enter, leave)
+                primitive = _any_in_tree(s, s.world.dynamic, o, local, enter, leave)
                 if primitive != MISS:
                     return Best(ZERO, primitive, ZERO, ZERO)
     return best
@@ -171,17 +107,16 @@ def closest(data, batch, first, last, counts):
     """Nearest hits of rays first to last - 1; counts[STEPS] and counts[TESTS] grow."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(data, stack, top_stack, counts)
-    rays = rays_of(batch)
-    hit_t, hit_primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
-    hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
+    s, asked = _Search(_read_world(data), stack, top_stack, i64_at(counts)), read_batch(batch)
+    rays, hit_t, hit_primitive = rays_of(asked), f32_at(asked.t), i32_at(asked.primitive)
+    hit_u, hit_v = f32_at(asked.u), f32_at(asked.v)
     for i in range(first, last):
         # Search the static tree, then the objects that rest and those that move.
         ray = ray_at(rays, i)
         best = no_hit(ray.t_max)
-        best = _closest_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max, best)
+        best = _closest_in_tree(s, s.world.static, 0, ray, ray.t_min, ray.t_max, best)
         for number in range(2):
-            top = s.resting if number == 0 else s.moving
+            top = s.world.resting if number == 0 else s.world.moving
             if top.there:
                 best = _closest_of(s, top, ray, best)
         hit_t[i] = best.t if best.primitive != MISS else INFINITY
@@ -193,21 +128,21 @@ def any_hit(data, batch, first, last, counts):
     """What of that which is asked for lies in the interval of rays first to last - 1."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
     top_stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s = _search(data, stack, top_stack, counts)
-    rays, blocked, which = rays_of(batch), u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
-    named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
+    s, asked = _Search(_read_world(data), stack, top_stack, i64_at(counts)), read_batch(batch)
+    rays, blocked, which = rays_of(asked), u8_at(asked.blocked), asked.which
+    named, occluders = asked.occluders != 0, i32_at(asked.occluders)
     for i in range(first, last):
         ray = ray_at(rays, i)
         # Search what is asked for, static geometry first, and stop at the first hit.
         found, primitive = 0, np.int32(MISS)
         if ray.t_min < ray.t_max:
             if which & STATIC_GEOMETRY:
-                primitive = _any_in_tree(s, s.static, 0, ray, ray.t_min, ray.t_max)
-                if primitive == MISS and s.resting.there:
-                    primitive = _any_of(s, s.resting, ray)
+                primitive = _any_in_tree(s, s.world.static, 0, ray, ray.t_min, ray.t_max)
+                if primitive == MISS and s.world.resting.there:
+                    primitive = _any_of(s, s.world.resting, ray)
                 found = STATIC_GEOMETRY if primitive != MISS else 0
-            if which & DYNAMIC_OBJECTS and s.moving.there and found == 0:
-                primitive = _any_of(s, s.moving, ray)
+            if which & DYNAMIC_OBJECTS and s.world.moving.there and found == 0:
+                primitive = _any_of(s, s.world.moving, ray)
                 found = DYNAMIC_OBJECTS if primitive != MISS else 0
         blocked[i] = np.uint8(found)
         if named:

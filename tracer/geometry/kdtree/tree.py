@@ -11,11 +11,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.geometry.boxes import inverse
-from tracer.geometry.intersect import ZERO
+from tracer.geometry.intersect import ZERO, hit_quadric, hit_triangle
+from tracer.geometry.queries import STEPS, TESTS
+from tracer.geometry.rays import INFINITY, MISS, Ray
 from tracer.runtime.kernels import inlined
+from tracer.simd.records import F32At, I32At
 
 LEAF = 3
 MAX_DEPTH = 60
@@ -29,32 +31,38 @@ class Trees(NamedTuple):
     Kernels that walk them are given pointers instead of arrays.
     """
 
-    words: NDArray[np.int32]
-    planes: NDArray[np.float32]
-    items: NDArray[np.int32]
+    words: I32At
+    planes: F32At
+    items: I32At
 
 
-class Parts(NamedTuple):
+class Top(NamedTuple):
+    """A tree over objects where they are in the world, the box (6,) float32 around it, and whether it has any."""
+
+    trees: Trees
+    box: F32At
+    there: bool
+
+
+class KdWorld(NamedTuple):
     """A world placed in kd-trees.
 
     triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object.  `static` is the tree over the
-    primitives of object 0, `dynamic` are those of the other objects, each in the space of its object.  `resting` is
-    a tree over the objects that rest, in the world and inside resting_box (6,), and `moving` one over the others.
-    For each object: roots (objects,) int32, where its tree begins; boxes (objects, 6) float32, in its own space;
-    to_object (objects, 12) float32, the map from the world.
+    primitives of object 0, `dynamic` are those of the other objects, each in the space of its object; `resting` leads
+    to the objects that rest, and `moving` to the others.  For each object: roots (objects,) int32, where its tree
+    begins; boxes (objects, 6) float32, in its own space; to_object (objects, 12) float32, the map from the world.
     """
 
-    triangles: NDArray[np.float32]
-    quadrics: NDArray[np.float32]
+    triangles: F32At
+    triangle_count: int
+    quadrics: F32At
     static: Trees
     dynamic: Trees
-    resting: Trees
-    moving: Trees
-    roots: NDArray[np.int32]
-    boxes: NDArray[np.float32]
-    to_object: NDArray[np.float32]
-    resting_box: NDArray[np.float32]
-    moving_box: NDArray[np.float32]
+    resting: Top
+    moving: Top
+    roots: I32At
+    boxes: F32At
+    to_object: F32At
 
 
 class Stack(NamedTuple):
@@ -122,3 +130,57 @@ def next_leaf(trees, ray, stack, pending):
             pending = push(stack, pending, far, t, leave)
             node, leave = near, t
         steps += 1
+
+
+class Best(NamedTuple):
+    """The nearest hit so far."""
+
+    t: Any
+    primitive: Any
+    u: Any
+    v: Any
+
+
+@inlined
+def no_hit(t_max):
+    """Nothing hit yet, and only what is nearer than t_max will do."""
+    return Best(t_max, np.int32(MISS), ZERO, ZERO)
+
+
+@inlined
+def between(ray, t_min, t_max):
+    """The same ray in another interval."""
+    return Ray(ray.ox, ray.oy, ray.oz, ray.dx, ray.dy, ray.dz, t_min, t_max)
+
+
+@inlined
+def hit_primitive(s, ray, primitive):
+    """(t, u, v) of a ray, in the primitive's own space, on a primitive of a search; t = inf for a miss."""
+    world = s.world
+    if primitive < world.triangle_count:
+        return hit_triangle(ray, world.triangles, primitive)
+    return hit_quadric(ray, world.quadrics, primitive - world.triangle_count), ZERO, ZERO
+
+
+@inlined
+def walk_leaves(s, trees, ray, pending, best, nearest):
+    """The nearer of `best` and the nearest hit below the nodes pending on the stack of a search; or, where not the
+    `nearest` is wanted, the first found.
+
+    Of hits at equal t the one on the lower number is the nearest.  `nearest` is a constant, so that either walk is
+    compiled without the other."""
+    while pending > 0 and (not nearest or s.stack.enter[pending - 1] <= best.t):
+        # Walk to the next leaf and test its primitives.
+        leaf = next_leaf(trees, ray, s.stack, pending)
+        pending = leaf.pending
+        s.counts[STEPS] += leaf.steps
+        for i in range(leaf.first, leaf.first + leaf.size):
+            s.counts[TESTS] += 1
+            primitive = trees.items[i]
+            t, u, v = hit_primitive(s, ray, primitive)
+            if nearest:
+                if t < best.t or (t == best.t and t < INFINITY and primitive < best.primitive):
+                    best = Best(t, primitive, u, v)
+            elif t < INFINITY:
+                return Best(t, primitive, u, v)
+    return best

@@ -11,46 +11,36 @@ import numpy as np
 from numba import carray
 
 from tracer.geometry.kdtree.build import INTERSECTION_COST, build_over
-from tracer.geometry.lazy_tree.node import (
-    CLAIMED,
-    DEPTH,
-    FIRST,
-    NODE,
-    PLANE,
-    SECOND,
-    SUBTREE,
-    UNBUILT,
-)
+from tracer.geometry.lazy_tree.node import DEPTH, FIRST, HEADER, NODE, SUBTREE, Node, Subtree
 from tracer.geometry.lazy_tree.references import (
     BOX,
     BYTES,
-    FROM,
-    LEVEL,
     NODES,
-    TOUCHED,
     WIDE,
     References,
+    add_to,
+    best_split,
     keep,
+    read_header,
     references_at,
     size_of_references,
     source_at,
     weight_of,
     within,
 )
-from tracer.geometry.lazy_tree.shared_memory import add_shared, allocate, exchange, free, publish, read_shared
-from tracer.geometry.lazy_tree.split import best_split
-from tracer.geometry.memory import float_bits
+from tracer.geometry.shared_memory import CLAIMED, UNBUILT, allocate, exchange, free, publish, read_shared
 from tracer.runtime.kernels import entry, kernel, subkernel
-from tracer.simd import call_entry, i32_at, load_i64, store, u8_at
+from tracer.simd import as_i32, call_entry, i32_at, load_i64, store
 from tracer.simd.addresses import f64_at
+from tracer.simd.records import writing
 
 FEW = 64  # primitives whose whole subtree is built at once
 PATIENCE = 64  # looks at a claimed node before another thread is let go on
-HEADER = 16  # bytes of a subtree before its words
+_write_node, _write_subtree = writing(Node), writing(Subtree)
 
 
 @subkernel
-def _grow_subtree(source, found, box, touched):
+def _grow_subtree(source, found, box):
     """The subtree of primitives in memory of its own: its address, how many nodes it has, and its bytes."""
     n = found.count
     # Let triangles come first, as the builder wants them.
@@ -70,13 +60,12 @@ def _grow_subtree(source, found, box, touched):
         numbers[place] = number
         for k in range(6):
             boxes[place, k] = found.boxes[i, k]
-        touched[number] = 1
+        source.touched[number] = 1
     words, items = build_over(boxes, box, triangles, np.zeros(2, np.int64))
     # Copy it to where it stays.
     size = HEADER + 4 * (len(words) + len(items))
     address = allocate(size)
-    store(address, np.int64(len(words)))
-    store(address + 8, np.int64(len(items)))
+    _write_subtree(address, Subtree(len(words), len(items)))
     to_words, to_items = i32_at(address + HEADER), i32_at(address + HEADER + 4 * len(words))
     for i in range(len(words)):
         to_words[i] = words[i]
@@ -88,9 +77,7 @@ def _grow_subtree(source, found, box, touched):
 @subkernel
 def _unbuilt(node, references, box, level, source):
     """Write a node that waits for its first ray."""
-    store(node + PLANE, np.int64(0))
-    store(node + FIRST, keep(references, box, level, source))
-    store(node + SECOND, np.int64(0))
+    _write_node(node, Node(CLAIMED, 0, keep(references, box, level, source), 0))
     publish(node, UNBUILT)
 
 
@@ -115,11 +102,9 @@ def _split(node, source, table, wide, box, level):
     children = allocate(2 * NODE)
     _unbuilt(children, lower, lower_box, level + 1, table)
     _unbuilt(children + NODE, upper, upper_box, level + 1, table)
-    store(node + PLANE, np.int64(float_bits(plane)))
-    store(node + FIRST, children)
-    store(node + SECOND, children + NODE)
-    add_shared(table + NODES, np.int64(1))
-    add_shared(table + BYTES, size_of_references(lower.count) + size_of_references(upper.count) + 2 * NODE)
+    _write_node(node, Node(CLAIMED, as_i32(np.float32(plane)), children, children + NODE))
+    add_to(source, NODES, 1)
+    add_to(source, BYTES, size_of_references(lower.count) + size_of_references(upper.count) + 2 * NODE)
     publish(node, np.int64(axis))
     return True
 
@@ -129,8 +114,7 @@ def open_node(node, pause, _a, _b, _c):
     """Build the node at an address, or wait until whoever claimed it has built it.
 
     `pause` is the address of what lets another thread go on, or 0 where a system has nothing for it."""
-    table = load_i64(load_i64(node + FIRST) + FROM) if exchange(node, UNBUILT, CLAIMED) else np.int64(0)
-    if table == 0:
+    if not exchange(node, UNBUILT, CLAIMED):
         looks = 0
         while read_shared(node) == CLAIMED:
             looks += 1
@@ -138,36 +122,37 @@ def open_node(node, pause, _a, _b, _c):
                 call_entry(pause, 0, 0, 0, 0, 0)
         return
     address = load_i64(node + FIRST)
-    source, given, level = source_at(table), references_at(address), load_i64(address + LEVEL)
+    header, given = read_header(address), references_at(address)
+    source = source_at(header.source)
     box = carray(f64_at(address + BOX), (6,)).copy()
     # Split it if it has many primitives and a split pays; else build all of it.
     done = False
     if given.weight > FEW:
         wide = within(source, given, box, WIDE, False)
-        done = _split(node, source, table, wide, box, level)
+        done = _split(node, source, header.source, wide, box, header.level)
     if not done:
         found = within(source, given, box, np.inf, True)
-        subtree, nodes, size = _grow_subtree(source, found, box, u8_at(load_i64(table + TOUCHED)))
+        subtree, nodes, size = _grow_subtree(source, found, box)
         store(node + FIRST, subtree)
-        add_shared(table + NODES, np.int64(nodes))
-        add_shared(table + BYTES, np.int64(size))
+        add_to(source, NODES, nodes)
+        add_to(source, BYTES, size)
         publish(node, SUBTREE)
-    add_shared(table + BYTES, -size_of_references(given.count))
+    add_to(source, BYTES, -size_of_references(given.count))
     free(address)
 
 
 @kernel
-def plant(bounds, numbers, boxes, weight, table):
+def new_root(bounds, numbers, boxes, weight, table):
     """The address of a tree's root, which waits for its first ray: its box (6,) float64, references (n,) int32 with
     boxes (n, 6) float32 that stand for so many primitives, and the address of its source."""
     root = allocate(NODE)
     _unbuilt(root, References(numbers, boxes, len(numbers), weight), bounds, 0, table)
-    add_shared(table + BYTES, size_of_references(len(numbers)) + NODE)
+    add_to(source_at(table), BYTES, size_of_references(len(numbers)) + NODE)
     return root
 
 
 @entry
-def fell(root, _a, _b, _c, _d):
+def free_tree(root, _a, _b, _c, _d):
     """Free all memory of a tree."""
     waiting, pairs = np.empty(4 * DEPTH, np.int64), np.empty(4 * DEPTH, np.int64)
     waiting[0], pairs[0], left = root, root, 1
@@ -178,7 +163,7 @@ def fell(root, _a, _b, _c, _d):
         word, first = load_i64(node), load_i64(node + FIRST)
         if pair != 0:
             free(pair)
-        if word < UNBUILT:
+        if 0 <= word < SUBTREE:
             waiting[left], pairs[left] = first + NODE, first
             waiting[left + 1], pairs[left + 1] = first, np.int64(0)
             left += 2

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.boxes import NO_BOX
+from tracer.geometry.boxes import NO_BOX, interval
 from tracer.runtime.kernels import kernel
 from tracer.scene.arrays import Float32, Int32
 
@@ -43,9 +43,7 @@ def _bound_primitives(triangles, quadric_boxes, first, counts, boxes):
         for i in range(first[g], first[g] + counts[g]):
             for k in range(3):
                 if i < len(triangles):
-                    a = triangles[i, k]
-                    b, c = a + triangles[i, k + 3], a + triangles[i, k + 6]
-                    low, high = min(a, min(b, c)), max(a, max(b, c))
+                    low, high = interval(triangles, i, k)
                 else:
                     low, high = quadric_boxes[i - len(triangles), k], quadric_boxes[i - len(triangles), k + 3]
                 boxes[g, k], boxes[g, k + 3] = min(boxes[g, k], low), max(boxes[g, k + 3], high)

@@ -3,7 +3,8 @@
 A node is four int64: what it is, the plane's bits, and two addresses.
 
 - INNER + axis: the addresses are those of the lower and of the upper child.
-- UNBUILT: the first address is that of its references (`references`).  The first ray to arrive has it split.
+- UNBUILT or CLAIMED: the first address is that of its references (`references`).  The first ray to arrive has it split
+  (`tracer.geometry.shared_memory`).
 - SUBTREE: few primitives, whose whole tree, of the kind in `tracer.geometry.kdtree.tree`, is at the first address: the
   numbers of its words and of its items, int64 each, and then the words and the items, int32 each.
 - OBJECTS: the first address is that of the node of what never moves; the second that of a list of objects, int32 each,
@@ -20,23 +21,43 @@ from typing import Any, NamedTuple
 from tracer.geometry.boxes import inverse
 from tracer.geometry.intersect import ZERO
 from tracer.geometry.kdtree.tree import at_plane, push
-from tracer.geometry.lazy_tree.shared_memory import read_shared
+from tracer.geometry.shared_memory import built
 from tracer.runtime.kernels import inlined
-from tracer.simd import call_entry, load_f32, load_i64
+from tracer.simd import load_f32, load_i64
+from tracer.simd.records import block_size, offset_of
 
-INNER, UNBUILT, CLAIMED, SUBTREE, OBJECTS = 0, 3, 4, 5, 6
+INNER, SUBTREE, OBJECTS = 0, 3, 4
 KIND, LOWER_MOVES, UPPER_MOVES = 7, 8, 16  # a mask, and flags beside it
-PLANE, FIRST, SECOND, NODE = 8, 16, 24, 32  # offsets in bytes, and the size of a node
-AGAIN = 1  # added to the address of a node of OBJECTS on the stack: what never moves has been asked there
+STATIC_VISITED = 1  # added to the address of a node of OBJECTS on the stack: what never moves has been asked there
 DEPTH = 40  # levels of such nodes in a tree; a tree over objects has as many again
 STACK = 2 * DEPTH + 8
+
+
+class Node(NamedTuple):
+    """A node in memory, 8 bytes each."""
+
+    word: int
+    plane: int
+    first: int
+    second: int
+
+
+class Subtree(NamedTuple):
+    """What stands before the words and the items of a SUBTREE: how many there are."""
+
+    words: int
+    items: int
+
+
+NODE, HEADER = block_size(Node), block_size(Subtree)  # bytes
+PLANE, FIRST, SECOND = (offset_of(Node, name) for name in ("plane", "first", "second"))
 
 
 class Building(NamedTuple):
     """Addresses of what builds a node, and of what lets other threads go on while one waits for it."""
 
-    open_node: Any
-    pause: Any
+    open_node: int
+    pause: int
 
 
 class Met(NamedTuple):
@@ -52,13 +73,9 @@ class Met(NamedTuple):
 
 
 @inlined
-def built(node, building):
+def word_of(node, building):
     """The first word of a node that rays can go on from: one that is not built yet is built now."""
-    word = read_shared(node)
-    while (word & KIND) == UNBUILT or (word & KIND) == CLAIMED:
-        call_entry(building.open_node, node, building.pause, 0, 0, 0)
-        word = read_shared(node)
-    return word
+    return built(node, building.open_node, node, building.pause)
 
 
 @inlined
@@ -71,13 +88,13 @@ def next_node(ray, stack, pending, building, moving):
     pending -= 1
     node, enter, leave = stack.node[pending], stack.enter[pending], stack.leave[pending]
     steps = 0
-    if node & AGAIN:
+    if node & STATIC_VISITED:
         return Met(node, OBJECTS, enter, leave, steps, pending)
     inverse_x, inverse_y, inverse_z = inverse(ray.dx), inverse(ray.dy), inverse(ray.dz)
     while True:
-        word = built(node, building)
+        word = word_of(node, building)
         axis = word & KIND
-        if axis >= UNBUILT:
+        if axis >= SUBTREE:
             return Met(node, axis, enter, leave, steps + (axis == OBJECTS), pending)
         steps += 1
         t, lower_first = at_plane(ray, inverse_x, inverse_y, inverse_z, axis, load_f32(node + PLANE))

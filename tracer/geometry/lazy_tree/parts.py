@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import LAZY
 from tracer.geometry.kdtree.tree import LEAF
-from tracer.geometry.lazy_tree.build import HEADER
-from tracer.geometry.lazy_tree.node import FIRST, KIND, PLANE, SECOND, SUBTREE, UNBUILT
-from tracer.geometry.lazy_tree.shared_memory import read_shared
+from tracer.geometry.lazy_tree.node import FIRST, HEADER, PLANE, SECOND, SUBTREE
+from tracer.geometry.shared_memory import read_shared
 from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
 from tracer.runtime.kernels import kernel
 from tracer.simd import i32_at, load_f32, load_i64
@@ -51,8 +50,8 @@ def _locate(root, bounds, to_object, scale, across, owner, points, numbers, owne
             node, level, known = root, 0, True
             for k in range(6):
                 cell[k] = bounds[k]
-            word = read_shared(node) & KIND
-            while word < UNBUILT:
+            word = read_shared(node)
+            while 0 <= word < SUBTREE:
                 plane = load_f32(node + PLANE)
                 if at[word] < plane:
                     cell[word + 3] = plane
@@ -61,7 +60,7 @@ def _locate(root, bounds, to_object, scale, across, owner, points, numbers, owne
                     cell[word] = plane
                     node = load_i64(node + SECOND)
                 level += 1
-                word = read_shared(node) & KIND
+                word = read_shared(node)
             number, there, many = node, 1 if word == SUBTREE else 0, np.int64(-1)
             if there:
                 words, place = load_i64(node + FIRST) + HEADER, np.int64(0)
@@ -92,7 +91,7 @@ class LazyParts:
 
     def __init__(self, structure: LazyKdTree, present: NDArray[np.int32], primitives: int) -> None:
         self._structure = weakref.ref(structure)
-        self._present, self._to_object = present, structure.parts.to_object
+        self._present, self._to_object = present, structure.world.to_object
         self._boxes = structure.world_boxes
         self.levels = round(8 + 1.3 * math.log2(max(primitives, 1)))  # as kd-trees are mostly deep
 

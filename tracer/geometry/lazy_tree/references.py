@@ -13,36 +13,57 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import carray
 
-from tracer.geometry.kdtree.build import clip_triangle, grown
-from tracer.geometry.lazy_tree.shared_memory import allocate
+from tracer.geometry.boxes import interval
+from tracer.geometry.kdtree.build import best_binned_split, clip_triangle, grown, split_cost
+from tracer.geometry.shared_memory import add_shared, allocate
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import f32_at, i32_at, load_i64, store
+from tracer.simd import address_of, f32_at, i32_at
 from tracer.simd.addresses import f64_at
+from tracer.simd.records import I32, I64, Bytes, F32x2D, block_size, reading, writing
 
 WIDE = 0.0625  # of a node's extent: groups that reach so far along any axis are opened before a split is chosen
 WAITING = 2048  # room for groups and primitives that are still to be looked at while one is opened
 
-# A source, as kernels read it: int64 each.  Addresses of arrays, and what is counted while the tree is built.
-(
-    TRIANGLES, TRIANGLE_COUNT, QUADRIC_BOXES, QUADRIC_COUNT, GROUP_BOXES, GROUP_FIRST, GROUP_COUNTS, GROUP_WEIGHTS,
-    GROUPS, TOUCHED, NODES, BYTES,
-) = range(0, 96, 8)  # fmt: skip
+NODES, BYTES = 0, 1  # of what is counted while a tree grows
 
-# References in memory: how many, the primitives in them, the level of their node, the source; the node's box, six
-# float64; boxes, six float32 each, and then the references, int32 each.
-COUNT, WEIGHT, LEVEL, FROM, BOX, REFERENCES = 0, 8, 16, 24, 32, 80
+
+class Header(NamedTuple):
+    """What stands before references in memory: how many they are, the primitives in them, the level of their node, and
+    the address of their source.  The node's box follows, six float64; then boxes, six float32 each, and the references,
+    int32 each."""
+
+    number: int
+    weight: int
+    level: int
+    source: int
+
+
+BOX = block_size(Header)
+REFERENCES = BOX + 6 * 8
+read_header, _write_header = reading(Header), writing(Header)
 
 
 class Source(NamedTuple):
-    """What a tree is built over: triangles (t, 9) and the boxes (q, 6) of quadrics, float32, of which it holds some;
-    and groups (g,) of those (`Hierarchy`)."""
+    """What a tree is built over: triangles (t, 9) and the boxes (q, 6) of quadrics, of which it holds some; groups (g,)
+    of those (`Hierarchy`); touched (t + q,) uint8, what has been built; and counts (2,), NODES and BYTES."""
 
-    triangles: Any
-    quadric_boxes: Any
-    group_boxes: Any
-    first: Any
-    counts: Any
-    weights: Any
+    triangles: F32x2D
+    quadric_boxes: F32x2D
+    group_boxes: F32x2D
+    first: I32
+    counts: I32
+    weights: I32
+    touched: Bytes
+    grown: I64
+
+
+source_at = reading(Source)
+
+
+@inlined
+def add_to(source, what, number):
+    """Add to NODES or BYTES."""
+    add_shared(address_of(source.grown) + 8 * what, np.int64(number))
 
 
 class References(NamedTuple):
@@ -55,40 +76,20 @@ class References(NamedTuple):
 
 
 @inlined
-def source_at(address):
-    """The source whose table is at an address."""
-    triangles, quadrics, groups = (
-        load_i64(address + TRIANGLE_COUNT),
-        load_i64(address + QUADRIC_COUNT),
-        load_i64(address + GROUPS),
-    )
-    return Source(
-        carray(f32_at(load_i64(address + TRIANGLES)), (triangles, 9)),
-        carray(f32_at(load_i64(address + QUADRIC_BOXES)), (quadrics, 6)),
-        carray(f32_at(load_i64(address + GROUP_BOXES)), (groups, 6)),
-        carray(i32_at(load_i64(address + GROUP_FIRST)), (groups,)),
-        carray(i32_at(load_i64(address + GROUP_COUNTS)), (groups,)),
-        carray(i32_at(load_i64(address + GROUP_WEIGHTS)), (groups,)),
-    )
-
-
-@inlined
 def references_at(address):
     """The references at an address, to be read only."""
-    n = load_i64(address + COUNT)
-    boxes = carray(f32_at(address + REFERENCES), (n, 6))
-    return References(carray(i32_at(address + REFERENCES + 24 * n), (n,)), boxes, n, load_i64(address + WEIGHT))
+    header = read_header(address)
+    n, boxes = header.number, address + REFERENCES
+    numbers = carray(i32_at(boxes + 24 * n), (n,))
+    return References(numbers, carray(f32_at(boxes), (n, 6)), n, header.weight)
 
 
 @subkernel
 def keep(references, box, level, source):
     """References in memory of their own, with what their node needs to be built: its address."""
     n = references.count
-    address = allocate(REFERENCES + 28 * n)
-    store(address + COUNT, np.int64(n))
-    store(address + WEIGHT, np.int64(references.weight))
-    store(address + LEVEL, np.int64(level))
-    store(address + FROM, np.int64(source))
+    address = allocate(size_of_references(n))
+    _write_header(address, Header(n, references.weight, level, source))
     corner, boxes, numbers = f64_at(address + BOX), f32_at(address + REFERENCES), i32_at(address + REFERENCES + 24 * n)
     for k in range(6):
         corner[k] = box[k]
@@ -113,9 +114,7 @@ def _box_of(source, number, box):
             box[k] = source.group_boxes[~number, k]
     elif number < len(source.triangles):
         for k in range(3):
-            a = source.triangles[number, k]
-            b, c = a + source.triangles[number, k + 3], a + source.triangles[number, k + 6]
-            box[k], box[k + 3] = min(a, min(b, c)), max(a, max(b, c))
+            box[k], box[k + 3] = interval(source.triangles, number, k)
     else:
         for k in range(6):
             box[k] = source.quadric_boxes[number - len(source.triangles), k]
@@ -200,3 +199,62 @@ def within(source, references, node, wide, everything):
             count += 1
             weight += weight_of(source, number)
     return References(numbers, boxes, count, weight)
+
+
+FEW = 64  # references; each face of their boxes is tried
+
+
+@subkernel
+def _cost_at(boxes, weights, n, box, axis, plane):
+    """What a split costs; what lies flat in the plane counts below it."""
+    lower, upper = np.int64(0), np.int64(0)
+    for j in range(n):
+        low, high = boxes[j, axis], boxes[j, axis + 3]
+        lower += weights[j] if low < plane or low == high == plane else np.int64(0)
+        upper += weights[j] if high > plane else np.int64(0)
+    return split_cost(box, axis, np.float64(plane), lower, upper)
+
+
+@subkernel
+def _best_face(boxes, weights, n, box):
+    """(cost, axis, plane) over all faces of boxes (n, 6) in a node's box (6,)."""
+    best_cost, best_axis, best_plane = np.inf, -1, 0.0
+    for axis in range(3):
+        for i in range(2 * n):
+            plane = boxes[i >> 1, axis + 3 * (i & 1)]
+            if not box[axis] < plane < box[axis + 3]:
+                continue
+            cost = _cost_at(boxes, weights, n, box, axis, plane)
+            if cost < best_cost:
+                best_cost, best_axis, best_plane = cost, axis, np.float64(plane)
+    return best_cost, best_axis, best_plane
+
+
+@subkernel
+def _best_bin(boxes, weights, n, box):
+    """(cost, axis, plane) over evenly spaced planes, and the faces next to the best."""
+    best_cost, best_axis, best_plane = best_binned_split(boxes, weights, 0, n, box)
+    if best_axis < 0:
+        return best_cost, best_axis, best_plane
+    # Move the plane to the nearest face on either side, between which it cuts the same references.
+    below, above = np.float32(box[best_axis]), np.float32(box[best_axis + 3])
+    for i in range(n):
+        low, high = boxes[i, best_axis], boxes[i, best_axis + 3]
+        for face in (low, high):
+            below = max(below, face) if face <= best_plane else below
+            above = min(above, face) if face >= best_plane else above
+    for face in (below, above):
+        if box[best_axis] < face < box[best_axis + 3]:
+            cost = _cost_at(boxes, weights, n, box, best_axis, face)
+            if cost <= best_cost:
+                best_cost, best_plane = cost, np.float64(face)
+    return best_cost, best_axis, best_plane
+
+
+@subkernel
+def best_split(boxes, weights, n, box):
+    """(cost, axis, plane) of the cheapest split of a node's box (6,) float64, in which are boxes (n, 6) of so many
+    primitives each, weights (n,) int64; infinite, -1 and 0 where there is none."""
+    if n > FEW:
+        return _best_bin(boxes, weights, n, box)
+    return _best_face(boxes, weights, n, box)

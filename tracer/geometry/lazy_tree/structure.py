@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import sys
 import weakref
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,19 +12,22 @@ from numpy.typing import NDArray
 from tracer.geometry.boxes import NO_BOX, transform_boxes, union_of
 from tracer.geometry.building import LONG
 from tracer.geometry.kdtree.build import bounds_of
-from tracer.geometry.kdtree.object_space import InObjectSpace
+from tracer.geometry.kdtree.structure import InObjectSpace
 from tracer.geometry.lazy_tree import traverse
-from tracer.geometry.lazy_tree.build import fell, open_node, plant
+from tracer.geometry.lazy_tree.build import free_tree, new_root, open_node
 from tracer.geometry.lazy_tree.hierarchy import bounds_of_roots, hierarchy_over
+from tracer.geometry.lazy_tree.node import Building
 from tracer.geometry.lazy_tree.parts import LazyParts
-from tracer.geometry.lazy_tree.references import BYTES, NODES
+from tracer.geometry.lazy_tree.references import BYTES, NODES, Source
+from tracer.geometry.lazy_tree.traverse import LazyWorld
 from tracer.geometry.lazy_tree.upper import raise_over
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
 from tracer.geometry.queries import Placed
-from tracer.geometry.structure import BuiltPart
+from tracer.geometry.structure import BuiltPart, placed_by
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Progress
+from tracer.simd.records import pack
 
 
 def _pause() -> int:
@@ -39,21 +41,6 @@ def _pause() -> int:
 PAUSE = _pause()
 
 
-class Parts(NamedTuple):
-    """A placed world: the address of its root, and the box (6,) around everything; of each object the address of its
-    root, its box (6,), the map (12,) into its space, and whether it rests; the box (6,) around those that move, and
-    whether any does.  Kernels are given the arrays by address: they live as long as this does."""
-
-    root: int
-    bounds: NDArray[np.float32]
-    object_roots: NDArray[np.int64]
-    object_boxes: NDArray[np.float32]
-    to_object: NDArray[np.float32]
-    rests: NDArray[np.uint8]
-    moving_box: NDArray[np.float32]
-    moves: bool
-
-
 class LazyTree:
     """The tree of one object in its own space: its root's address, the box (6,) float32 around it, and what is counted
     while it grows.  Its memory is freed with it."""
@@ -65,26 +52,16 @@ class LazyTree:
         self.primitives = triangles.stop - triangles.start + quadrics.stop - quadrics.start
         roots = np.arange(len(hierarchy.boxes) - hierarchy.roots, len(hierarchy.boxes), dtype=np.int32)
         self.box = bounds_of(bounds_of_roots(hierarchy)) if self.primitives else NO_BOX.copy()
-        arrays = (hierarchy.boxes, hierarchy.first, hierarchy.counts, hierarchy.weights)
-        self._table = np.array(
-            [
-                primitives.triangles.ctypes.data,
-                len(primitives.triangles),
-                quadric_boxes.ctypes.data,
-                len(quadric_boxes),
-                *(a.ctypes.data for a in arrays),
-                len(hierarchy.boxes),
-                touched.ctypes.data,
-                0,
-                0,
-            ],
-            np.int64,
-        )
-        self._kept = (primitives.triangles, quadric_boxes, touched)  # whose addresses are in the table
+        self._grown = np.zeros(2, np.int64)
+        self._source = Source(
+            primitives.triangles, quadric_boxes, hierarchy.boxes, hierarchy.first, hierarchy.counts, hierarchy.weights,
+            touched, self._grown,
+        )  # fmt: skip
+        self._table = pack(self._source)
         box, table = self.box.astype(np.float64), self._table.ctypes.data
-        self.root = plant(box, ~roots, np.ascontiguousarray(hierarchy.boxes[roots]), self.primitives, table)
-        fell.compile()  # now: when a tree goes, nothing may be compiled, as something may be being compiled just then
-        weakref.finalize(self, fell.call, self.root, 0, 0, 0, 0).atexit = False
+        self.root = new_root(box, ~roots, np.ascontiguousarray(hierarchy.boxes[roots]), self.primitives, table)
+        free_tree.compile()  # now: something else may be being compiled when a tree goes
+        weakref.finalize(self, free_tree.call, self.root, 0, 0, 0, 0).atexit = False
 
     @property
     def groups(self) -> tuple[Float32, NDArray[np.int64]]:
@@ -94,7 +71,7 @@ class LazyTree:
 
     def counted(self, what: int) -> int:
         """NODES that are built, or BYTES."""
-        return int(self._table[what // 8])
+        return int(self._grown[what])
 
 
 class LazyKdTree(InObjectSpace):
@@ -109,19 +86,19 @@ class LazyKdTree(InObjectSpace):
         everything = slice(0, len(primitives.quadrics))
         self._quadric_boxes = primitives.quadric_boxes(everything, primitives.to_object)
         self._touched = np.zeros(len(primitives.object_of), np.uint8)
-        self._trees = [self._plant(index, progress) for index in range(objects)]
+        self._trees = [self._new_tree(index, progress) for index in range(objects)]
 
-    def _plant(self, index: int, progress: Progress | None = None) -> LazyTree:
+    def _new_tree(self, index: int, progress: Progress | None = None) -> LazyTree:
         if progress is not None and index == 0 and len(self._touched) >= LONG:
             progress("grouping primitives", 0.0)
         return LazyTree(self._primitives, self._quadric_boxes, index, self._touched)
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
-        """Plant the trees of objects that deform anew, and make the upper nodes over the objects that are present."""
+        """Make the trees of objects that deform anew, and make the upper nodes over the objects that are present."""
         primitives = self._primitives
         for index in primitives.deformations:
             self._touched[primitives.triangles_of(index)] = 0
-            self._trees[index] = self._plant(index)
+            self._trees[index] = self._new_tree(index)
         present, moving = poses.present.copy(), poses.present & ~resting
         present[0] = moving[0] = False
         self._present = objects = np.flatnonzero(present).astype(np.int32)
@@ -131,23 +108,19 @@ class LazyKdTree(InObjectSpace):
         self.world_boxes = boxes  # of those that are present
         moves = moving[objects]
         bounds = bounds_of(union_of(np.concatenate([object_boxes[:1], boxes]))[None])
-        root = self._trees[0].root
+        root, building = self._trees[0].root, Building(open_node.address, PAUSE)
         if len(objects):
-            self._upper = raise_over(boxes, objects, moves, bounds.astype(np.float64), root, open_node.address, PAUSE)
+            self._upper = raise_over(boxes, objects, moves, bounds.astype(np.float64), root, building)
             root = self._upper[0].ctypes.data
         roots = np.array([tree.root for tree in self._trees], np.int64)
         to_object, rests = poses.to_object.reshape(-1, 12).astype(np.float32), (present & ~moving).astype(np.uint8)
         has, moving_box = bool(moves.any()), bounds_of(boxes[moves])
-        self.parts = Parts(root, bounds, roots, object_boxes, to_object, rests, moving_box, has)
-        arrays = bounds, roots, object_boxes, to_object, rests
-        shapes = primitives.triangles.ctypes.data, primitives.quadrics.ctypes.data
-        addresses = *shapes, root, *(a.ctypes.data for a in arrays)
-        count = len(primitives.triangles)
-        self._data = np.array([*addresses, open_node.address, PAUSE, moving_box.ctypes.data, count, has], np.int64)
-        return Placed(
-            primitives.triangles, primitives.quadrics, to_object, primitives.object_of, self.closest.address,
-            self.any_hit.address, self._data.ctypes.data, has, moving_box,
+        self.world = LazyWorld(
+            primitives.triangles, len(primitives.triangles), primitives.quadrics, root, bounds, roots, object_boxes,
+            to_object, rests, moving_box, has, building,
         )  # fmt: skip
+        self._data = pack(self.world)
+        return placed_by(self, primitives, to_object, self._data, has, moving_box)
 
     def build(self) -> None:
         """Nodes wait for rays by nature."""
@@ -168,4 +141,4 @@ class LazyKdTree(InObjectSpace):
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
-        return self.parts.bounds
+        return self.world.bounds

@@ -14,92 +14,62 @@ import numpy as np
 
 from tracer.geometry.boxes import hit_box
 from tracer.geometry.intersect import transform_ray
-from tracer.geometry.kdtree.nearest import between, no_hit, walk_leaves
-from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, push
-from tracer.geometry.lazy_tree.build import HEADER
+from tracer.geometry.kdtree.tree import STACK_SIZE, Stack, Trees, between, no_hit, push, walk_leaves
 from tracer.geometry.lazy_tree.node import (
-    AGAIN,
     FIRST,
+    HEADER,
     OBJECTS,
     SECOND,
     STACK,
+    STATIC_VISITED,
     SUBTREE,
     Building,
     next_node,
 )
 from tracer.geometry.memory import local_float32, local_int32
-from tracer.geometry.queries import (
-    BLOCKED,
-    DYNAMIC_OBJECTS,
-    HIT_PRIMITIVE,
-    HIT_T,
-    HIT_U,
-    HIT_V,
-    OCCLUDER,
-    STATIC_GEOMETRY,
-    STEPS,
-    WHICH,
-    rays_of,
-)
+from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, STEPS, rays_of, read_batch
 from tracer.geometry.rays import INFINITY, MISS, ray_at
 from tracer.runtime.kernels import entry, inlined, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, load_i64, local_memory, u8_at
+from tracer.simd.records import BytesAt, F32At, I64At, reading
 
 REMEMBERED = 8  # objects that a ray has searched last, which other nodes that they reach into need not search again
 STACK_BYTES = 8 * STACK
+STACKS = 6 * STACK_BYTES
 
-# A placed world as the entries get it, int64 each: addresses of triangles, quadrics, the root of everything and the
-# box around it; of each object's root, int64, its box in its own space, the map there, and whether it rests, uint8;
-# of what builds; of the box around what moves; the number of triangles; and whether anything moves.
-(
-    TRIANGLES, QUADRICS, ROOT, BOUNDS, OBJECT_ROOTS, OBJECT_BOXES, TO_OBJECT, RESTS, OPEN_NODE, PAUSE, MOVING_BOX,
-    TRIANGLE_COUNT, HAS_MOVING,
-) = range(0, 104, 8)  # fmt: skip
+
+class LazyWorld(NamedTuple):
+    """A placed world: triangles (t, 9) and quadrics (q, 16) float32, in the space of their object; the address of the
+    root of everything, and the box (6,) around it; for each object the address of its root, its box (6,) in its own
+    space, the map (12,) there, and whether it rests; the box (6,) around those that move, and whether any does; and
+    what builds nodes."""
+
+    triangles: F32At
+    triangle_count: int
+    quadrics: F32At
+    root: int
+    bounds: F32At
+    object_roots: I64At
+    object_boxes: F32At
+    to_object: F32At
+    rests: BytesAt
+    moving_box: F32At
+    moves: bool
+    building: Building
+
+
+_read_world = reading(LazyWorld)
 
 
 class _Search(NamedTuple):
-    """A placed world as pointers, and the memory that the walk of one ray needs."""
+    """A placed world, as pointers, and the memory that the walk of one ray needs."""
 
-    triangles: Any
-    triangle_count: Any
-    quadrics: Any
-    root: Any
-    bounds: Any
-    moving_box: Any
-    has_moving: Any
-    object_roots: Any
-    object_boxes: Any
-    to_object: Any
-    rests: Any
-    building: Building
+    world: Any
     upper: Stack
     lower: Stack
     stack: Stack
     searched: Any
     counts: Any
-
-
-@inlined
-def _search(data, upper, lower, stack, searched, counts):
-    return _Search(
-        f32_at(load_i64(data + TRIANGLES)),
-        load_i64(data + TRIANGLE_COUNT),
-        f32_at(load_i64(data + QUADRICS)),
-        load_i64(data + ROOT),
-        f32_at(load_i64(data + BOUNDS)),
-        f32_at(load_i64(data + MOVING_BOX)),
-        load_i64(data + HAS_MOVING) != 0,
-        i64_at(load_i64(data + OBJECT_ROOTS)),
-        f32_at(load_i64(data + OBJECT_BOXES)),
-        f32_at(load_i64(data + TO_OBJECT)),
-        u8_at(load_i64(data + RESTS)),
-        Building(load_i64(data + OPEN_NODE), load_i64(data + PAUSE)),
-        upper,
-        lower,
-        stack,
-        searched,
-        i64_at(counts),
-    )
 
 
 @subkernel
@@ -115,12 +85,12 @@ def _in_subtree(s, node, ray, enter, leave, best, nearest):
 @subkernel
 def _in_object(s, o, ray, enter, leave, best, nearest):
     """As `_in_subtree`, in all of object o; the ray is in its space."""
-    near, far = hit_box(between(ray, enter, leave), s.object_boxes, o)
+    near, far = hit_box(between(ray, enter, leave), s.world.object_boxes, o)
     if near > far:
         return best
-    pending = push(s.lower, 0, s.object_roots[o], near, far)
+    pending = push(s.lower, 0, s.world.object_roots[o], near, far)
     while pending > 0 and (not nearest or s.lower.enter[pending - 1] <= best.t):
-        met = next_node(ray, s.lower, pending, s.building, False)
+        met = next_node(ray, s.lower, pending, s.world.building, False)
         pending = met.pending
         s.counts[STEPS] += met.steps
         best = _in_subtree(s, met.node, ray, met.enter, met.leave, best, nearest)
@@ -132,13 +102,13 @@ def _in_object(s, o, ray, enter, leave, best, nearest):
 @inlined
 def _meets_what_moves(s, ray):
     """Whether a ray meets the box around all that moves: methods rely on it that nothing else has hits on that."""
-    near, far = hit_box(ray, s.moving_box, 0)
-    return s.has_moving and near <= far
+    near, far = hit_box(ray, s.world.moving_box, 0)
+    return s.world.moves and near <= far
 
 
 @inlined
 def _local(s, ray, o):
-    return transform_ray(ray, s.to_object, o, 12)
+    return transform_ray(ray, s.world.to_object, o, 12)
 
 
 @inlined
@@ -155,7 +125,7 @@ def _is_searched(s, o, count):
 @inlined
 def _put_off(s, met, pending):
     """Leave the objects of a node until what never moves has been asked there: how many nodes are pending then."""
-    pending = push(s.upper, pending, met.node | AGAIN, met.enter, met.leave)
+    pending = push(s.upper, pending, met.node | STATIC_VISITED, met.enter, met.leave)
     return push(s.upper, pending, load_i64(met.node + FIRST), met.enter, met.leave)
 
 
@@ -163,24 +133,24 @@ def _put_off(s, met, pending):
 def _closest(s, ray):
     """The nearest hit of a ray."""
     best, searched, moving = no_hit(ray.t_max), 0, _meets_what_moves(s, ray)
-    near, far = hit_box(ray, s.bounds, 0)
-    pending = push(s.upper, 0, s.root, near, far) if near <= far else 0
+    near, far = hit_box(ray, s.world.bounds, 0)
+    pending = push(s.upper, 0, s.world.root, near, far) if near <= far else 0
     while pending > 0:
         if s.upper.enter[pending - 1] > best.t:  # but objects that were put off, further down, may be nearer
             pending -= 1
             continue
-        met = next_node(ray, s.upper, pending, s.building, False)
+        met = next_node(ray, s.upper, pending, s.world.building, False)
         pending = met.pending
         s.counts[STEPS] += met.steps
         if met.kind == SUBTREE:
             best = _in_subtree(s, met.node, ray, met.enter, met.leave, best, True)
-        elif not met.node & AGAIN:
+        elif not met.node & STATIC_VISITED:
             pending = _put_off(s, met, pending)
         else:
-            objects = i32_at(load_i64(met.node - AGAIN + SECOND))
+            objects = i32_at(load_i64(met.node - STATIC_VISITED + SECOND))
             for i in range(1, 1 + objects[0]):
                 o = objects[i]
-                if (moving or s.rests[o] != 0) and not _is_searched(s, o, searched):
+                if (moving or s.world.rests[o] != 0) and not _is_searched(s, o, searched):
                     s.searched[searched % REMEMBERED] = o
                     searched += 1
                     best = _in_object(s, o, _local(s, ray, o), ray.t_min, best.t, best, True)
@@ -195,10 +165,10 @@ def _any(s, ray, which):
     if which & DYNAMIC_OBJECTS and not _meets_what_moves(s, ray):
         which ^= DYNAMIC_OBJECTS
     found, moving, searched = 0, np.int32(MISS), 0
-    near, far = hit_box(ray, s.bounds, 0)
-    pending = push(s.upper, 0, s.root, near, far) if near <= far and which else 0
+    near, far = hit_box(ray, s.world.bounds, 0)
+    pending = push(s.upper, 0, s.world.root, near, far) if near <= far and which else 0
     while pending > 0:
-        met = next_node(ray, s.upper, pending, s.building, which == DYNAMIC_OBJECTS)
+        met = next_node(ray, s.upper, pending, s.world.building, which == DYNAMIC_OBJECTS)
         pending = met.pending
         s.counts[STEPS] += met.steps
         if met.kind == SUBTREE:
@@ -207,13 +177,13 @@ def _any(s, ray, which):
                 if primitive != MISS:
                     return STATIC_GEOMETRY, primitive
         elif met.kind == OBJECTS:
-            if which & STATIC_GEOMETRY and not met.node & AGAIN:
+            if which & STATIC_GEOMETRY and not met.node & STATIC_VISITED:
                 pending = _put_off(s, met, pending)
                 continue
-            objects = i32_at(load_i64((met.node | AGAIN) - AGAIN + SECOND))
+            objects = i32_at(load_i64((met.node | STATIC_VISITED) - STATIC_VISITED + SECOND))
             for i in range(1, 1 + objects[0]):
                 o = objects[i]
-                kind = STATIC_GEOMETRY if s.rests[o] != 0 else DYNAMIC_OBJECTS
+                kind = STATIC_GEOMETRY if s.world.rests[o] != 0 else DYNAMIC_OBJECTS
                 if not which & kind or (kind == DYNAMIC_OBJECTS and found != 0) or _is_searched(s, o, searched):
                     continue
                 s.searched[searched % REMEMBERED] = o
@@ -228,19 +198,28 @@ def _any(s, ray, which):
     return found, moving
 
 
+@inlined
+def _search(data, counts, stacks, stack, searched):
+    """The search of one ray after another; `stacks` is the address of STACKS bytes."""
+    lower = stacks + 3 * STACK_BYTES
+    return _Search(
+        _read_world(data),
+        Stack(i64_at(stacks), f32_at(stacks + STACK_BYTES), f32_at(stacks + 2 * STACK_BYTES)),
+        Stack(i64_at(lower), f32_at(lower + STACK_BYTES), f32_at(lower + 2 * STACK_BYTES)),
+        stack,
+        searched,
+        i64_at(counts),
+    )
+
+
 @entry
 def closest(data, batch, first, last, counts):
     """Nearest hits of rays first to last - 1; counts[STEPS] and counts[TESTS] grow."""
-    upper = Stack(
-        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
-    )
-    lower = Stack(
-        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
-    )
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s, rays = _search(data, upper, lower, stack, local_int32(REMEMBERED), counts), rays_of(batch)
-    hit_t, hit_primitive = f32_at(load_i64(batch + HIT_T)), i32_at(load_i64(batch + HIT_PRIMITIVE))
-    hit_u, hit_v = f32_at(load_i64(batch + HIT_U)), f32_at(load_i64(batch + HIT_V))
+    s = _search(data, counts, local_memory(STACKS), stack, local_int32(REMEMBERED))
+    asked = read_batch(batch)
+    rays, hit_t, hit_primitive = rays_of(asked), f32_at(asked.t), i32_at(asked.primitive)
+    hit_u, hit_v = f32_at(asked.u), f32_at(asked.v)
     for i in range(first, last):
         best = _closest(s, ray_at(rays, i))
         hit_t[i] = best.t if best.primitive != MISS else INFINITY
@@ -250,16 +229,11 @@ def closest(data, batch, first, last, counts):
 @entry
 def any_hit(data, batch, first, last, counts):
     """What of that which is asked for lies in the interval of rays first to last - 1."""
-    upper = Stack(
-        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
-    )
-    lower = Stack(
-        i64_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES)), f32_at(local_memory(STACK_BYTES))
-    )
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
-    s, rays = _search(data, upper, lower, stack, local_int32(REMEMBERED), counts), rays_of(batch)
-    blocked, which = u8_at(load_i64(batch + BLOCKED)), load_i64(batch + WHICH)
-    named, occluders = load_i64(batch + OCCLUDER) != 0, i32_at(load_i64(batch + OCCLUDER))
+    s = _search(data, counts, local_memory(STACKS), stack, local_int32(REMEMBERED))
+    asked = read_batch(batch)
+    rays, blocked, which = rays_of(asked), u8_at(asked.blocked), asked.which
+    named, occluders = asked.occluders != 0, i32_at(asked.occluders)
     for i in range(first, last):
         ray = ray_at(rays, i)
         found, primitive = 0, np.int32(MISS)

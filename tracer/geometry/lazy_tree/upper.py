@@ -20,15 +20,13 @@ from tracer.geometry.lazy_tree.node import (
     OBJECTS,
     PLANE,
     SECOND,
-    UNBUILT,
+    SUBTREE,
     UPPER_MOVES,
-    Building,
-    built,
+    word_of,
 )
-from tracer.geometry.lazy_tree.split import best_split
-from tracer.geometry.memory import float_bits
+from tracer.geometry.lazy_tree.references import best_split
 from tracer.runtime.kernels import kernel, subkernel
-from tracer.simd import address_of, load_f32, load_i64
+from tracer.simd import address_of, as_i32, load_f32, load_i64
 
 EACH = 8  # what an object costs that a ray must look for, in tests
 BORDER = 4.0  # what a plane at an object's border costs: below both sides the same nodes are entered again
@@ -38,8 +36,8 @@ BORDER = 4.0  # what a plane at an object's border costs: below both sides the s
 def _smallest(node, box, building):
     """The smallest node below this one that holds all of a box (6,) float64."""
     while True:
-        axis = built(node, building)
-        if axis >= UNBUILT:
+        axis = word_of(node, building)
+        if axis >= SUBTREE:
             return node
         plane = load_f32(node + PLANE)
         if box[axis + 3] <= plane:
@@ -59,12 +57,12 @@ def _twice(rows, used):
 
 
 @kernel
-def raise_over(boxes, objects, moves, bounds, below, open_node, pause):
+def raise_over(boxes, objects, moves, bounds, below, building):
     """Nodes (n, 4) int64 over objects (m,) int32 with boxes (m, 6) float32, inside bounds (6,) float64; the lists of
     objects, int32, that they lead to; and whether anything moves below the first.
 
     moves (m,) bool tells which do not rest; `below` is the address of the tree of what never moves."""
-    m, building = len(boxes), Building(open_node, pause)
+    m = len(boxes)
     most = min(int(10 + 2 * math.log2(max(m, 1))), DEPTH - 1)
     nodes, count = np.empty((64, 4), np.int64), 1  # children as numbers from 0 on, or ~ the address of what never moves
     listed, pool = np.empty(4 * m + 64, np.int32), np.empty((4 * m + 64, 1), np.int64)
@@ -92,8 +90,8 @@ def raise_over(boxes, objects, moves, bounds, below, open_node, pause):
             cost, axis, plane = best_split(inside[:n], weights, n, box)
             cost += BORDER
             # A plane of what never moves costs nothing, as rays would meet it anyway.
-            own = built(static, building)
-            if own < UNBUILT:
+            own = word_of(static, building)
+            if own < SUBTREE:
                 its_plane = np.float64(load_f32(static + PLANE))
                 lower, upper = np.int64(0), np.int64(0)
                 for i in range(n):
@@ -120,7 +118,7 @@ def raise_over(boxes, objects, moves, bounds, below, open_node, pause):
             nodes, old = _twice(nodes, count), moving
             moving = np.zeros(len(nodes), np.bool_)
             moving[: len(old)] = old
-        nodes[node, 0], nodes[node, 1] = axis, float_bits(plane)
+        nodes[node, 0], nodes[node, 1] = axis, as_i32(np.float32(plane))
         taken = pool[first:top, 0].copy()
         top = first
         for side in range(1, -1, -1):

@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import interval
 from tracer.geometry.building import CANCELLED
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import inlined, kernel, subkernel
@@ -65,13 +66,13 @@ def make_items(count: int) -> Items:
 
 
 @inlined
-def _put_item(item, x0, y0, z0, x1, y1, z1, number, weight):
-    store(item, x0)
-    store(item + 4, y0)
-    store(item + 8, z0)
-    store(item + UPPER, -x1)
-    store(item + UPPER + 4, -y1)
-    store(item + UPPER + 8, -z1)
+def _put_side(item, axis, low, high):
+    store(item + 4 * axis, low)
+    store(item + UPPER + 4 * axis, -high)
+
+
+@inlined
+def _put_number(item, number, weight):
     store(item + NUMBER, np.int32(number))
     store(item + WEIGHT, np.int32(weight))
 
@@ -80,37 +81,21 @@ def _put_item(item, x0, y0, z0, x1, y1, z1, number, weight):
 def put_triangles(items, rows, first, last):
     """Triangles first to last - 1 of rows (t, 9), corner and two edges, become the items of those numbers."""
     for i in range(first, last):
-        x, y, z = rows[i, 0], rows[i, 1], rows[i, 2]
-        x1, y1, z1 = x + rows[i, 3], y + rows[i, 4], z + rows[i, 5]
-        x2, y2, z2 = x + rows[i, 6], y + rows[i, 7], z + rows[i, 8]
-        _put_item(
-            address_of(items.items) + ITEM * i,
-            min(x, min(x1, x2)),
-            min(y, min(y1, y2)),
-            min(z, min(z1, z2)),
-            max(x, max(x1, x2)),
-            max(y, max(y1, y2)),
-            max(z, max(z1, z2)),
-            i,
-            1,
-        )
+        item = address_of(items.items) + ITEM * i
+        for axis in range(3):
+            low, high = interval(rows, i, axis)
+            _put_side(item, axis, low, high)
+        _put_number(item, i, 1)
 
 
 @kernel
 def put_boxes(items, boxes, first):
     """Boxes (n, 6) become items from `first` on, each of which will have a leaf to itself."""
     for i in range(len(boxes)):
-        _put_item(
-            address_of(items.items) + ITEM * (first + i),
-            boxes[i, 0],
-            boxes[i, 1],
-            boxes[i, 2],
-            boxes[i, 3],
-            boxes[i, 4],
-            boxes[i, 5],
-            first + i,
-            WIDTH,
-        )
+        item = address_of(items.items) + ITEM * (first + i)
+        for axis in range(3):
+            _put_side(item, axis, boxes[i, axis], boxes[i, axis + 3])
+        _put_number(item, first + i, WIDTH)
 
 
 @subkernel

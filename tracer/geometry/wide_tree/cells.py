@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import interval
 from tracer.geometry.building import CANCELLED, CHUNK, in_chunks
-from tracer.runtime.kernels import kernel, subkernel
+from tracer.runtime.kernels import kernel
 from tracer.scene.arrays import Float32
 from tracer.scene.model import Cancelled
 
@@ -34,21 +35,13 @@ class Cells(NamedTuple):
     boxes: Float32
 
 
-@subkernel
-def _interval(rows, i, axis):
-    """The lower and upper end of a triangle along an axis."""
-    a = rows[i, axis]
-    b, c = a + rows[i, 3 + axis], a + rows[i, 6 + axis]
-    return min(a, min(b, c)), max(a, max(b, c))
-
-
 @kernel
 def bound_centres(rows, order, first, last, bounds):
     """The least and the greatest centres, doubled, of triangles order[first] to order[last - 1], into bounds (6,)."""
     for axis in range(3):
         least, greatest = np.float32(np.inf), np.float32(-np.inf)
         for i in range(first, last):
-            low, high = _interval(rows, order[i], axis)
+            low, high = interval(rows, order[i], axis)
             least, greatest = min(least, low + high), max(greatest, low + high)
         bounds[axis], bounds[axis + 3] = least, greatest
 
@@ -60,7 +53,7 @@ def find_cells(rows, order, first, last, low, scale, shape, cells):
     for i in range(first, last):
         cell = 0
         for axis in range(3):
-            a, b = _interval(rows, order[i], axis)
+            a, b = interval(rows, order[i], axis)
             place = int((a + b - low[axis]) * scale[axis])
             cell = cell * shape[axis] + min(max(place, 0), shape[axis] - 1)
         cells[i] = cell
@@ -82,7 +75,7 @@ def sort_by_cell(rows, order, cells, first, last, base, ends, boxes, sorted_):
         sorted_[base + ends[cell]] = triangle
         ends[cell] += 1
         for k in range(3):
-            low, high = _interval(rows, triangle, k)
+            low, high = interval(rows, triangle, k)
             boxes[cell, k], boxes[cell, k + 3] = min(boxes[cell, k], low), max(boxes[cell, k + 3], high)
 
 

@@ -1,4 +1,4 @@
-"""Large trees in pieces: nobody can tell when a piece was built, or by whom."""
+"""Large trees of subtrees: nobody can tell when a subtree was built, or by whom."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.same import assert_same
 from tests.tracing.worlds import random_corners, scene
-from tracer.geometry.bvh8 import pieces
-from tracer.geometry.bvh8.pieces import PiecewiseTree
+from tracer.geometry.bvh8 import subtrees
+from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import Rays
 from tracer.geometry.structure import BuiltPart
@@ -25,9 +25,9 @@ from tracer.scene.model import Cancelled, Scene
 
 
 @pytest.fixture(autouse=True)
-def tiny_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pieces, "LARGE", 10)
-    monkeypatch.setattr(pieces, "PIECE_SIZE", 16)
+def tiny_subtrees(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subtrees, "LARGE", 10)
+    monkeypatch.setattr(subtrees, "SUBTREE_SIZE", 16)
 
 
 def built(world: tracer.World) -> BuiltPart:
@@ -47,7 +47,7 @@ def assert_alike(lazy: tracer.World, whole: tracer.World, rays: Rays, threads: i
         assert np.array_equal(one, other)
 
 
-def test_random_worlds_answer_alike_lazy_whole_and_not_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_random_worlds_answer_alike_lazy_whole_and_not_in_subtrees(monkeypatch: pytest.MonkeyPatch) -> None:
     parts: list[BuiltPart] = []
 
     @quickly(12)
@@ -57,7 +57,7 @@ def test_random_worlds_answer_alike_lazy_whole_and_not_in_pieces(monkeypatch: py
         rays = random_rays(rng, 64)
         lazy, whole = tracer.World(made, time, lazy=True), tracer.World(made, time)
         with monkeypatch.context() as patch:
-            patch.setattr(pieces, "LARGE", 1 << 40)
+            patch.setattr(subtrees, "LARGE", 1 << 40)
             plain = tracer.World(made, time)
         assert whole.built() is plain.built() is None
         for _ in range(2):
@@ -142,7 +142,7 @@ def test_cells_hold_every_triangle_once_and_no_more_than_they_may() -> None:
 def test_what_goes_wrong_while_a_ray_waits_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
     made, rays = large(), random_rays(np.random.default_rng(1), 300)
     fails: list[type[BaseException]] = [KeyboardInterrupt]
-    build = pieces.build_topology
+    build = subtrees.build_topology
 
     def failing(*arguments):
         if fails:
@@ -150,23 +150,23 @@ def test_what_goes_wrong_while_a_ray_waits_is_raised(monkeypatch: pytest.MonkeyP
         return build(*arguments)
 
     world, whole = tracer.World(made, 0.0, lazy=True), tracer.World(made, 0.0)
-    monkeypatch.setattr(pieces, "build_topology", failing)
+    monkeypatch.setattr(subtrees, "build_topology", failing)
     with pytest.raises(KeyboardInterrupt):
         world.closest_hits(rays)
-    assert_alike(world, whole, rays)  # the piece was built all the same
+    assert_alike(world, whole, rays)  # the subtree was built all the same
     fails.append(MemoryError)
     world = tracer.World(made, 0.0, lazy=True)
-    for _ in range(2):  # a piece is missing, which no picture may show
+    for _ in range(2):  # a subtree is missing, which no picture may show
         with pytest.raises(MemoryError):
             world.closest_hits(rays)
 
 
-def test_a_build_in_pieces_can_be_stopped() -> None:
+def test_a_build_in_subtrees_can_be_stopped() -> None:
     rows = triangle_rows(random_corners(np.random.default_rng(2), 500, 0.1).astype(np.float32))
     nothing = np.empty((0, 6), np.float32)
     with pytest.raises(Cancelled):
-        PiecewiseTree(rows, nothing, np.array([1, 0]), 1)
-    tree = PiecewiseTree(rows, nothing, np.zeros(2, np.int64), 1)
+        LargeTree(rows, nothing, np.array([1, 0]), 1)
+    tree = LargeTree(rows, nothing, np.zeros(2, np.int64), 1)
     with pytest.raises(Cancelled):
         tree.build_all(np.array([1, 0]), 2)
 
@@ -175,7 +175,7 @@ def test_a_tree_with_few_addresses_is_the_same_in_less_room(monkeypatch: pytest.
     made, rays = large(), random_rays(np.random.default_rng(1), 300)
     whole = tracer.World(made, 0.0)
     most = 4 * (whole.structure.static.nodes.size + whole.structure.static.blocks.size)
-    monkeypatch.setattr(pieces.room, "of_limit", lambda: 1.9 * most)
+    monkeypatch.setattr(subtrees.memory_check, "of_limit", lambda: 1.9 * most)
     lazy, few = tracer.World(made, 0.0, lazy=True), tracer.World(made, 0.0)
     assert_alike(lazy, whole, rays)
     lazy.build()
@@ -183,7 +183,7 @@ def test_a_tree_with_few_addresses_is_the_same_in_less_room(monkeypatch: pytest.
     for world in (lazy, few):
         tree = world.structure.static
         assert 4 * (tree.nodes.size + tree.blocks.size) < 0.7 * most
-    monkeypatch.setattr(pieces.room, "of_limit", lambda: 2.1 * most)
+    monkeypatch.setattr(subtrees.memory_check, "of_limit", lambda: 2.1 * most)
     assert tracer.World(made, 0.0, lazy=True).structure.static.nodes.shape == whole.structure.static.nodes.shape
 
 
@@ -191,23 +191,23 @@ def test_no_room_at_all_is_an_error_of_memory(monkeypatch: pytest.MonkeyPatch) -
     def reserved(size: int) -> bytearray:
         raise OSError(12, "Cannot allocate memory")
 
-    monkeypatch.setattr(pieces, "_reserved", reserved)
+    monkeypatch.setattr(subtrees, "_reserved", reserved)
     with pytest.raises(MemoryError, match=r"no room for a tree of 0\.\d GB"):
         tracer.World(large(), 0.0, lazy=True)
 
 
-def test_pieces_that_are_interrupted_again_and_again_never_leave_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pieces.room, "of_limit", lambda: 1000.0)
+def test_subtrees_that_are_interrupted_again_and_again_never_leave_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subtrees.memory_check, "of_limit", lambda: 1000.0)
     world = tracer.World(large(), 0.0, lazy=True)
-    write = pieces.write_topology
+    write = subtrees.write_topology
 
     def interrupted(*arguments) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(pieces, "write_topology", interrupted)
+    monkeypatch.setattr(subtrees, "write_topology", interrupted)
     for _ in range(50):
         with pytest.raises((KeyboardInterrupt, MemoryError)):
             world.build()
-    monkeypatch.setattr(pieces, "write_topology", write)
-    with pytest.raises(MemoryError, match="no room for a piece"):
+    monkeypatch.setattr(subtrees, "write_topology", write)
+    with pytest.raises(MemoryError, match="no room for a subtree"):
         world.build()

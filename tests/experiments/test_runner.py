@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from tracer.experiments.time_left import TimeLeft
+from tracer.experiments.runner import TimeLeft
 
 
 class Clock:

@@ -1,18 +1,27 @@
-"""Memory that threads share while they build: pieces of it by address, and words that are read and written at once.
+"""What is built when the first ray arrives, and the memory that threads share for it: one protocol for all trees.
 
-numba's own allocator gives the pieces, which nobody counts: who allocates one must free it.
+Whatever may be missing has a word, an int64: negative while it is missing, UNBUILT or, where somebody builds it,
+CLAIMED.  A ray that finds it so calls what builds it, which comes back once it is there, whoever has built it
+(`built`).  Who builds writes all of it and then publishes the word (release); who reads the word (acquire) sees all of
+that.
+
+Memory comes from numba's own allocator, and nobody counts references: who allocates must free.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba.core import types
 
+from tracer.runtime.kernels import inlined, kernel
+from tracer.simd import address_of, call_entry
 from tracer.simd.vectors import operation
 
 WORD = ir.IntType(64)
+UNBUILT, CLAIMED = -2, -1
 
 
 def _at(builder: Any, address: Any) -> Any:
@@ -81,3 +90,22 @@ def add_shared(typingctx, address, value):
         return context.get_dummy_value()
 
     return types.void(types.int64, types.int64), codegen
+
+
+@inlined
+def built(word, build, what, pause):
+    """The word at an address, once what it stands for is there.
+
+    `build` is the address of what builds it: an entry that is given `what`, and `pause`, the address of what lets
+    other threads go on, or 0."""
+    found = read_shared(word)
+    while found < 0:
+        call_entry(build, what, pause, 0, 0, 0)
+        found = read_shared(word)
+    return found
+
+
+@kernel
+def publish_word(words, index, value):
+    """As `publish`, for Python: the word of this number among words (n,) int64."""
+    publish(address_of(words) + 8 * index, np.int64(value))
