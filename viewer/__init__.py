@@ -24,9 +24,7 @@ __all__ = ["show"]
 
 
 def show(
-    scene: Scene | str | Path,
-    on_frame: Callable[[Frame], bool | None] | None = None,
-    **settings: Any,
+    scene: Scene | str | Path, on_frame: Callable[[Frame], bool | None] | None = None, **settings: Any
 ) -> Frame | None:
     """Open the viewer on a scene, and wait until it is closed.
 

@@ -154,12 +154,9 @@ def terminal_width() -> int | None:
 
 
 def listed(
-    columns: Sequence[Column[Row]],
-    rows: Sequence[Row],
-    title: str = "",
-    caption: str = "",
+    columns: Sequence[Column[Row]], rows: Sequence[Row], title: str = "", caption: str = "",
     section: Callable[[Row], object] = lambda row: None,
-) -> Table:
+) -> Table:  # fmt: skip
     """Make a table with a line for each row, and a rule wherever the section is another."""
     table = titled(title, caption)
     lines = [[column.cell(row) for column in columns] for row in rows]
@@ -175,11 +172,9 @@ def listed(
 
 
 def fitted(
-    columns: Sequence[Column[Row]],
-    made: Callable[[Sequence[Column[Row]]], Sequence[Table]],
-    width: int | None,
+    columns: Sequence[Column[Row]], made: Callable[[Sequence[Column[Row]]], Sequence[Table]], width: int | None,
     least: int = 3,
-) -> Sequence[Table]:
+) -> Sequence[Table]:  # fmt: skip
     """Return the tables that are made of the columns, without the last of these where a terminal so wide has no room,
     but for the `least`; the last caption names what is left out.  None is any width."""
     count, tables = len(columns), made(columns)

@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
 from viewer.state.palette import DARK, FATES, LIGHT, Color, hex_color, label_color
-from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, places
+from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, placed
 from viewer.views.legend import BACKDROP_OPACITY, Legend, fitting, wrapped
 
 # The least size of letters in pixels, and how many lines of them the picture's shorter side holds.
@@ -55,14 +55,16 @@ def with_savings(pixels: NDArray[np.uint8], frame: Frame, comparison: str | None
     words = ", ".join(filter(None, (in_words(counters(frame)), comparison)))
     strip = _strip(pixels, words, DARK, LIGHT, height)
     draw, letters, bottom = ImageDraw.Draw(strip), font(size), strip.height - margin
-    for part, left, right in places(bar, margin, strip.width - margin):
+    for part, left, right, label_at, beside in placed(bar, margin, strip.width - 2 * margin, letters.getlength, pad):
+        color, there = FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0
+        red, green, blue = np.multiply(there, color) + np.multiply(1.0 - there, DARK)
+        inset = (height - (right - left)) // 2 if beside else 0
         if right > left:
-            color, there = FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0
-            drawn = np.multiply(there, color) + np.multiply(1.0 - there, DARK)
-            draw.rectangle((left, bottom - height, right - 1, bottom - 1), in_bytes((drawn[0], drawn[1], drawn[2])))
-            text = part.label(letters.getlength, right - left - 2 * pad)
-            said = LIGHT if part.would else label_color(color)
-            draw.text((left + pad, bottom - height + round(0.1 * size)), text, in_bytes(said), letters)
+            corners = left, bottom - height + inset, right - 1, bottom - inset - 1
+            draw.rectangle(corners, in_bytes((red, green, blue)))
+        if label_at is not None:
+            said = in_bytes(LIGHT if part.would or beside else label_color(color))
+            draw.text((label_at, bottom - height + round(0.1 * size)), part.label, said, letters)
     return np.concatenate([np.asarray(strip), pixels])
 
 

@@ -21,7 +21,7 @@ from tracer.statistics import FrameStatistics
 from viewer.services.refinement import MOST_FRAMES
 from viewer.services.render_request import REFINEMENT_SECONDS, Parts, RenderRequest, Spare, Traced
 from viewer.state.methods import NO_CULLING
-from viewer.state.savings import InTurn, Spread
+from viewer.state.savings import InTurn
 from viewer.util.messages import one_line
 
 STILL = 0.7
@@ -145,7 +145,8 @@ class Rounds:
             for method in methods if self.so_far.count % 2 == 0 else methods[::-1]:
                 one[method] = yield replace(settings, method=method)
             now = InTurn(methods, (*self.so_far.rounds, tuple(one[method] for method in methods)))
-            narrow = now.tells and all(_is_narrow(now.speed(method, methods[0])) for method in methods[1:])
+            speeds = [now.speed(method, methods[0]) for method in methods[1:]] if now.tells else []
+            narrow = now.tells and all(one.margin <= max(NARROW, CLEAR * abs(one.median - 1.0)) for one in speeds)
             self.so_far = replace(now, settled=narrow or now.count >= MOST_ROUNDS)
 
     def _trace(self, renderer: Renderer, settings: Settings, cancelled: Cancel) -> FrameStatistics:
@@ -157,10 +158,6 @@ class Rounds:
             own.take_modes(renderer)
         own.settings = settings
         return own.render(self.subject.time, self.subject.camera, cancelled).statistics
-
-
-def _is_narrow(speed: Spread) -> bool:
-    return speed.margin <= max(NARROW, CLEAR * abs(speed.median - 1.0))
 
 
 class Baseline:

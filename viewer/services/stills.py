@@ -132,16 +132,12 @@ def with_caption_filled(state: ViewState, scene: Scene) -> ViewState:
 
 def fields_of(state: ViewState, scene: Scene) -> dict[str, Any]:
     """Return the values of `capture.FIELDS` but for date and time."""
+    draw, settings = state.draw, state.settings
     return {
-        "scene": scene.path.stem,
-        "view": state.draw.view.value,
-        "frame": Session(scene).frame_at(state.time),
-        "seconds": state.time,
-        "method": state.settings.method,
-        "light": state.draw.light,
-        "width": state.settings.width,
-        "height": state.settings.height,
-    }
+        "scene": scene.path.stem, "view": draw.view.value, "frame": Session(scene).frame_at(state.time),
+        "seconds": state.time, "method": settings.method, "light": draw.light, "width": settings.width,
+        "height": settings.height,
+    }  # fmt: skip
 
 
 def trace_methods(

@@ -56,8 +56,15 @@ class Tour:
         self._shows, self._until = False, 0.0
         self._pace = Pace()  # as it was before the tour
 
+    @property
+    def is_done(self) -> bool:
+        """Whether all of the step was done, and the next one comes in a moment."""
+        return self.step is not None and 0 < len(self.step.parts) == self._held
+
     def text(self, step: Step) -> str:
-        """Return what to do in a step, as things are, with the keys that do it now."""
+        """Return what to do in a step, as things are, with the keys that do it now; what is done is not asked again."""
+        if self.is_done and callable(step.text):
+            return ""
         text = step.text if isinstance(step.text, str) else step.text(self._c)
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 

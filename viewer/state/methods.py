@@ -19,12 +19,7 @@ from viewer.util.numbers import count
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
 """What is chosen to see every ray traced, the paper's modes at work, certificates, and whatever is quickest."""
 
-SHOWN_BY = {
-    View.CERTIFICATE: CERTIFIED,
-    View.CUTS: "lightcuts",
-    View.VOXELS: "voxels",
-    View.CELL_LIGHTS: "lie-exact",
-}
+SHOWN_BY = {View.CERTIFICATE: CERTIFIED, View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact"}
 """Views of what single methods have, and one that has it."""
 
 

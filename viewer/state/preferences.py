@@ -99,7 +99,8 @@ class Preferences:
     @property
     def picture_folder(self) -> Path:
         """Where pictures and results are saved."""
-        return Path(self.screenshot_folder or default_screenshot_folder()).expanduser()
+        usual = Path(platformdirs.user_pictures_dir()) / "shadowcull"  # the user's own pictures
+        return Path(self.screenshot_folder or usual).expanduser()
 
     def reset(self, kept: Collection[str]) -> None:
         """Make everything as it was at first, but for these fields."""
@@ -117,11 +118,6 @@ def config_folder() -> Path:
     """Where settings live; not created here."""
     override = os.environ.get("SHADOWCULL_CONFIG_DIR")
     return Path(override) if override else Path(platformdirs.user_config_dir("shadowcull", appauthor=False))
-
-
-def default_screenshot_folder() -> Path:
-    """The user's own pictures folder, where pictures are saved unless another is set."""
-    return Path(platformdirs.user_pictures_dir()) / "shadowcull"
 
 
 def load_preferences(folder: Path | None = None) -> tuple[Preferences, str | None]:

@@ -31,6 +31,7 @@ WOULD_OPACITY = 0.4
 TWO_ERRORS = 2.0 * 1.2533 / 1.349
 """Twice the standard error of a median, as a part of the quartiles' distance by the root of the number: normal numbers
 have quartiles 1.349 standard deviations apart, and medians with 1.2533 times the error of the mean."""
+_SHORTEST = 0.4  # of the width, that the bar takes
 LEAST = 8
 """Rounds from which on a median tells something."""
 
@@ -125,10 +126,9 @@ class Part:
     def share(self) -> str:
         return percent(self.rays, self.due)
 
-    def label(self, length: Callable[[str], float], room: float) -> str:
-        """Return its name and share, or the share alone, as far as there is room; `length` is that of a text."""
-        texts = f"{self.name} {self.share}", self.share
-        return next((text for text in texts if length(text) <= room), "")
+    @property
+    def label(self) -> str:
+        return f"{self.name} {self.share}"
 
     def in_words(self) -> str:
         """Return what it is, in two lines."""
@@ -136,13 +136,31 @@ class Part:
         return f"{self.name}: {count(self.rays)} of {count(self.due)} shadow rays due ({self.share})\n{way}{meaning}"
 
 
-def places(bar: tuple[Part, ...], left: float, right: float) -> Iterator[tuple[Part, int, int]]:
-    """Yield each part with where it begins and ends, in whole pixels, between two edges."""
+def placed(
+    bar: tuple[Part, ...], left: float, width: float, length: Callable[[str], float], pad: float
+) -> Iterator[tuple[Part, int, int, int | None, bool]]:
+    """Yield what is drawn in the colour of a part: its stretch of the bar, and behind the shortened bar a square before
+    each label that does not fit into its part.  Each with its edges in whole pixels, where its label begins if that is
+    here, and whether it is such a square, which is two pads wide.
+
+    `length` is that of a text.  In little width some parts have no label."""
+    outside, bar_width, room = set[Part](), width, {part: length(part.label) + 5.0 * pad for part in bar}
+    for part in 2 * sorted(bar, key=lambda part: part.rays):  # twice, as each makes the others narrower
+        narrow = part not in outside and length(part.label) + 2.0 * pad > bar_width * part.rays / part.due
+        if narrow and bar_width - room[part] >= _SHORTEST * width:
+            outside.add(part)
+            bar_width -= room[part]
     done = 0
     for part in bar:
-        start, end = (round(left + (right - left) * rays / part.due) for rays in (done, done + part.rays))
+        start, end = (round(left + bar_width * rays / part.due) for rays in (done, done + part.rays))
         done += part.rays
-        yield part, start, end
+        fits = part not in outside and length(part.label) + pad <= end - start
+        yield part, start, end, round(start + pad) if fits else None, False
+    at = left + bar_width
+    for part in (one for one in bar if one in outside):
+        start, end = round(at + pad), round(at + 3.0 * pad)
+        yield part, start, end, round(end + pad), True
+        at += room[part]
 
 
 def bar_of(frame: Frame) -> tuple[Part, ...]:
@@ -156,13 +174,9 @@ def bar_of(frame: Frame) -> tuple[Part, ...]:
         rays = {Fate.CULLED: said.full_shadow, Fate.DYNAMIC_ONLY: said.non_shadow}
         rays[Fate.TRACED] = shadow.due - sum(rays.values())
     else:
-        rays = {
-            Fate.CULLED: shadow.culled,
-            Fate.DYNAMIC_ONLY: shadow.dynamic_only,
-            Fate.CANDIDATES: shadow.candidates_only,
-            Fate.CACHED: shadow.cache_hits,
-            Fate.TRACED: shadow.traced,
-        }
+        rays = {Fate.CULLED: shadow.culled, Fate.DYNAMIC_ONLY: shadow.dynamic_only,
+                Fate.CANDIDATES: shadow.candidates_only, Fate.CACHED: shadow.cache_hits,
+                Fate.TRACED: shadow.traced}  # fmt: skip
     return tuple(Part(fate, number, shadow.due, would) for fate, number in rays.items() if number > 0)
 
 

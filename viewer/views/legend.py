@@ -130,10 +130,12 @@ STEPS = 64
 """Boxes that a bar of the colour map consists of."""
 
 
-def fitting(legend: Legend, measure: Measure, line: float, width: float, height: float) -> Layout | None:
+def fitting(
+    legend: Legend, measure: Measure, line: float, width: float, height: float, most: float = 1e9
+) -> Layout | None:
     """The layout of as much of a legend as there is room for: notes go first, then facts, then the last column.
 
-    None where even the colours and their names are too large."""
+    None where even the colours and their names are too large, or cover an area of more than `most`."""
     plain = replace(legend, notes=(), facts=())
     narrower = (
         replace(plain, columns=plain.columns[:n], entries=tuple(replace(e, values=e.values[:n]) for e in plain.entries))
@@ -141,7 +143,7 @@ def fitting(legend: Legend, measure: Measure, line: float, width: float, height:
     )
     for one in (legend, replace(legend, notes=()), plain, *narrower):
         layout = lay_out(one, measure, line)
-        if layout.width <= width and layout.height <= height:
+        if layout.width <= width and layout.height <= height and layout.width * layout.height <= most:
             return layout
     return None
 

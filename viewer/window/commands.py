@@ -176,14 +176,11 @@ def _interface(ui: Ui) -> list[Command]:
         p.ui_scale = SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)] if steps else 1.0
         ui.controller.notices.say(f"interface at {100.0 * p.ui_scale:.0f} %")
 
+    def flip(owner: object, name: str) -> None:
+        setattr(owner, name, not getattr(owner, name))
+
     def other_theme() -> None:
         p.theme = "dark" if p.theme == "light" else "light"
-
-    def hide_panels() -> None:
-        ui.panels_hidden = not ui.panels_hidden
-
-    def fill_screen() -> None:
-        ui.full_screen.wanted = not ui.full_screen.wanted
 
     def workspace(one: Workspace, key: str) -> Command:
         return Command(one.name, "View", partial(hello_imgui.switch_layout, one.name), key, tip=one.help,
@@ -199,8 +196,10 @@ def _interface(ui: Ui) -> list[Command]:
         Command("Smaller interface", "View", partial(size, -1), "Ctrl+Minus", enabled=smallest,
                 other_keys=("Ctrl+KeypadSubtract",)),
         Command("Interface at 100 %", "View", partial(size, 0), "Ctrl+0", other_keys=("Ctrl+Keypad0",)),
-        Command("Hide panels", "View", hide_panels, "Tab", checked=lambda: ui.panels_hidden, separated=True),
-        Command("Full screen", "View", fill_screen, "F11", checked=lambda: ui.full_screen.wanted),
+        Command("Hide panels", "View", partial(flip, ui, "panels_hidden"), "Tab", separated=True,
+                checked=lambda: ui.panels_hidden),
+        Command("Full screen", "View", partial(flip, ui.full_screen, "wanted"), "F11",
+                checked=lambda: ui.full_screen.wanted),
         *[workspace(one, key) for one, key in zip(WORKSPACES, ("F2", "F3", "F4"))],
         Command("Default layout", "View", lambda: ui.reset_layout(), tip="the panels of this workspace as they were"),
     ]  # fmt: skip

@@ -16,15 +16,8 @@ import glfw  # after imgui_bundle, which brings the library that both must share
 
 from viewer.state.preferences import Preferences
 
-HELD = {
-    "Fly forward": "W",
-    "Fly back": "S",
-    "Fly left": "A",
-    "Fly right": "D",
-    "Fly up": "E",
-    "Fly down": "Q",
-    "Show A": "Z",
-}
+HELD = {"Fly forward": "W", "Fly back": "S", "Fly left": "A", "Fly right": "D", "Fly up": "E", "Fly down": "Q",
+        "Show A": "Z"}  # fmt: skip
 """What is done for as long as a key is held, and its key; Shift makes it faster."""
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Alt": imgui.Key.mod_alt, "Super": imgui.Key.mod_super,
               "Shift": imgui.Key.mod_shift}  # fmt: skip

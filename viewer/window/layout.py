@@ -66,47 +66,44 @@ PANELS: dict[str, Callable[[Ui], None]] = {
 """What shows each panel, in the order of the menu and of tabs."""
 
 
-class Workspace(NamedTuple):
-    """A layout for one kind of work.
+_WHOLE, _COLUMN, _ANSWERS, _TABLES = "MainDockSpace", "Right", "RightBottom", "Bottom"
+_RUNS = ("Experiment", "Zoom test", "Hunt")
+_PLACES = {
+    _COLUMN: ("View", "Culling", "Figure 1", "Statistics", "Scene", "Rendering", "Camera", "Saving", "Film"),
+    _ANSWERS: ("Inspector", "Plots", "What if"),
+    _TABLES: (*_RUNS, "Find", "Pixels", "Compare", "Light buffer", "Log"),
+    TOUR: (TOUR,),
+}
+"""Where panels are: in a column as high as the window, or in a part below it for what is pointed at; below the picture,
+for what needs width; and the tour above the column, where it takes no room from the picture."""
 
-    `splits` cut the window: a new part, the part that it is cut off from, at which side, and its share of that.
-    `open` says which panels are open at first, by their part; `closed` where others are when they are opened."""
+
+class Workspace(NamedTuple):
+    """A layout for one kind of work: the share of the window's width that the column has, those of the window's and the
+    column's height that the lower parts have, and the panels that are open at first."""
 
     name: str
     help: str
-    splits: tuple[tuple[str, str, imgui.Dir, float], ...]
-    open: dict[str, tuple[str, ...]]
-    closed: dict[str, tuple[str, ...]]
+    column: float
+    tables: float
+    answers: float
+    open: tuple[str, ...]
 
 
-_WHOLE, _RIGHT, _BOTTOM = "MainDockSpace", "Right", "Bottom"
-_FOUND = ("Experiment", "Zoom test", "Hunt")
-_LOWER = ("Plots", "Compare", "Pixels", "Find", "Light buffer", "Film", "Log")
+MEASURE, _TOUR = "Measure", 0.24  # the workspace that runs have, and the tour's share of the column
 WORKSPACES = (
     Workspace(
         "Explore", "room for the picture, and a column: how shadow rays are culled, what is shown, and why",
-        ((_RIGHT, _WHOLE, imgui.Dir.right, 0.235), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.35),
-         (TOUR, _RIGHT, imgui.Dir.up, 0.24), ("RightBottom", _RIGHT, imgui.Dir.down, 0.46)),
-        {_RIGHT: ("View", "Culling", "Figure 1"), "RightBottom": ("Inspector",)},
-        {_RIGHT: ("Statistics", "Scene", "Rendering", "Camera", "Saving"), "RightBottom": ("What if",),
-         _BOTTOM: _FOUND + _LOWER, TOUR: (TOUR,)},
+        0.235, 0.35, 0.46, ("View", "Culling", "Figure 1", "Inspector"),
     ),
     Workspace(
-        "Measure", "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
-        ((_RIGHT, _WHOLE, imgui.Dir.right, 0.28), (_BOTTOM, _WHOLE, imgui.Dir.down, 0.45),
-         ("RightBottom", _RIGHT, imgui.Dir.down, 0.45)),
-        {_RIGHT: ("Statistics", "Culling"), "RightBottom": ("Compare", "Plots"), _BOTTOM: _FOUND},
-        {_RIGHT: ("View", "Scene", "Rendering", "Camera", "Saving", TOUR), "RightBottom": ("Inspector", "What if"),
-         _BOTTOM: ("Figure 1", "Pixels", "Find", "Light buffer", "Film", "Log")},
+        MEASURE, "experiments, zoom tests and hunts, with plots, and statistics beside a comparison",
+        0.235, 0.365, 0.5, ("Culling", "Statistics", "Plots", *_RUNS, "Compare"),
     ),
     Workspace(
         "Debug", "rays of a pixel, objects and primitives, pixels, edits and the log",
-        (("Left", _WHOLE, imgui.Dir.left, 0.22), (_RIGHT, _WHOLE, imgui.Dir.right, 0.36),
-         (_BOTTOM, _WHOLE, imgui.Dir.down, 0.38), ("LeftBottom", "Left", imgui.Dir.down, 0.5)),
-        {"Left": ("View", "Culling"), "LeftBottom": ("What if", "Scene"), _RIGHT: ("Inspector",),
-         _BOTTOM: ("Find", "Pixels", "Compare", "Light buffer", "Log")},
-        {"Left": ("Rendering", "Camera", "Saving", TOUR), "LeftBottom": ("Statistics",),
-         _BOTTOM: (*_FOUND, "Figure 1", "Plots", "Film")},
+        0.3, 0.33, 0.6,
+        ("View", "Culling", "Scene", "Inspector", "What if", "Find", "Pixels", "Compare", "Light buffer", "Log"),
     ),
 )  # fmt: skip
 SIDES = tuple(label for label in PANELS if label not in (PICTURE, TOUR))
@@ -120,25 +117,35 @@ class Layout:
 
     def __init__(self, ui: Ui, params: hello_imgui.RunnerParams) -> None:
         self._ui, self._params = ui, params
-        self._size = (0.0, 0.0)
+        self._sizes: dict[str, tuple[float, float]] = {}  # that workspaces had when they were shown last
         self._to_front: set[str] = set()  # panels to be focused when they are drawn next
+        self._of_run = ""  # the panel to be shown once the workspace is there that runs have
         params.docking_params, *params.alternative_docking_layouts = map(self._docked, WORKSPACES)
         ui.show_panel, ui.panel_labels, ui.reset_layout = self.show, SIDES, self.reset
 
     # --- what the commands ask for ---------------------------------------------------------------
 
     def show(self, label: str) -> None:
-        """Open a panel, and bring it to the front."""
-        self._ui.panels_hidden = False
-        self._docking.dockable_window_of_name(label).is_visible = True
-        self._to_front.add(label)
+        """Open a panel, and bring it to the front; that of a run in the workspace that has room for results, unless it
+        is open here."""
+        ui, now = self._ui, self._ui.workspace
+        ui.panels_hidden = False
+        window = self._docking.dockable_window_of_name(label)
+        if label in _RUNS and not window.is_visible and now != MEASURE:
+            hello_imgui.switch_layout(MEASURE)  # in the next frame
+            self._of_run = label
+            back = f"{ui.key_or_menu(now)} brings back {now} as it was"
+            ui.controller.notices.say(f"{label} is in the workspace {MEASURE}; {back}")
+        else:
+            window.is_visible = True
+            self._to_front.add(label)
 
     def reset(self) -> None:
         """Open the panels of this workspace and no others, docked where they were at first."""
         self._ui.panels_hidden = False
         workspace = next(one for one in WORKSPACES if one.name == self._ui.workspace)
         for window in self._docking.dockable_windows:
-            window.is_visible = _is_open(workspace, window.label)
+            window.is_visible = window.label in (PICTURE, *workspace.open)
         self._docking.layout_reset = True
 
     def show_menu(self) -> None:
@@ -169,6 +176,9 @@ class Layout:
         """Keep shares as they were, and show the tour's panel while it is taken, before the panels are drawn."""
         self._keep_shares()
         self._ui.workspace = hello_imgui.current_layout_name()
+        if self._of_run and self._ui.workspace == MEASURE:
+            self.show(self._of_run)
+            self._of_run = ""
         self._docking.dockable_window_of_name(TOUR).is_visible = self._ui.tour.step is not None
         node, no_tabs = _node_of(PICTURE), int(imgui.internal.DockNodeFlagsPrivate_.no_tab_bar)
         if node is not None and not node.local_flags & no_tabs:  # it is always there, and needs the room
@@ -181,9 +191,12 @@ class Layout:
         picture = _node_of(PICTURE)
         if picture is None:
             return
-        size, before = imgui.internal.dock_node_get_root_node(picture).size, self._size
-        self._size = size.x, size.y
-        if before == self._size or min(before) <= 0.0 or min(self._size) <= 0.0:
+        size, workspace = imgui.internal.dock_node_get_root_node(picture).size, hello_imgui.current_layout_name()
+        if min(size.x, size.y) <= 0.0:
+            return
+        before = self._sizes.get(workspace, (size.x, size.y))
+        self._sizes[workspace] = size.x, size.y
+        if before == (size.x, size.y):
             return
         for node in {node.id_: node for label in PANELS for node in _with_parents(_node_of(label))}.values():
             node.size_ref = ImVec2(node.size_ref.x * size.x / before[0], node.size_ref.y * size.y / before[1])
@@ -201,14 +214,14 @@ class Layout:
         # Without the cross beside the tabs, which closes all of them; and not what Hello ImGui has by default, which
         # would give it a background whatever the style.
         docking.main_dock_space_node_flags = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button)
+        split, side = hello_imgui.DockingSplit, imgui.Dir
         docking.docking_splits = [
-            hello_imgui.DockingSplit(of, space, side, share) for space, of, side, share in workspace.splits
-        ]
-        spaces = {
-            label: space for part in (workspace.open, workspace.closed) for space in part for label in part[space]
-        }
+            split(_WHOLE, _COLUMN, side.right, workspace.column), split(_WHOLE, _TABLES, side.down, workspace.tables),
+            split(_COLUMN, TOUR, side.up, _TOUR), split(_COLUMN, _ANSWERS, side.down, workspace.answers),
+        ]  # fmt: skip
+        spaces = {label: space for space, labels in _PLACES.items() for label in labels}
         docking.dockable_windows = [
-            self._window(label, spaces.get(label, _WHOLE), _is_open(workspace, label)) for label in PANELS
+            self._window(label, spaces.get(label, _WHOLE), label in (PICTURE, *workspace.open)) for label in PANELS
         ]
         return docking
 
@@ -243,10 +256,6 @@ class Layout:
             self._docking.dockable_window_of_name(label).is_visible = False
             if label == TOUR:
                 self._ui.tour.end()
-
-
-def _is_open(workspace: Workspace, label: str) -> bool:
-    return label == PICTURE or any(label in labels for labels in workspace.open.values())
 
 
 def _in_front(label: str) -> bool:

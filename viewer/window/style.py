@@ -191,6 +191,7 @@ def _whole(x: float, y: float) -> ImVec2:
 
 def _style_plots(em: float) -> None:
     style = implot.get_style()
+    style.plot_min_size = ImVec2(6.0 * em, 5.0 * em)
     style.plot_padding = ImVec2(0.35 * em, 0.3 * em)
     style.label_padding = ImVec2(0.25 * em, 0.2 * em)
     style.legend_padding = ImVec2(0.4 * em, 0.25 * em)

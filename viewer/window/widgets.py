@@ -177,9 +177,15 @@ def one_of(choices: Iterable[tuple[T, str, str]], now: T) -> T:
     return now
 
 
+def dropdown(name: str, shown: str, flags: int = 0) -> bool:
+    """Begin a list to be opened; returns whether it is.  What it shows else ends in an ellipsis where it is narrow."""
+    room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
+    return bool(imgui.begin_combo(name, fitted(shown, room), flags))
+
+
 def one_of_list(name: str, shown: str, choices: Iterable[tuple[T, str, str]], now: T, tip: str = "") -> T:
     """Show a list to be opened, of values with their labels and tips; returns the one that is chosen."""
-    if imgui.begin_combo(name, shown):
+    if dropdown(name, shown):
         for choice, label, meaning in choices:
             if imgui.selectable(label, choice == now)[0]:
                 now = choice

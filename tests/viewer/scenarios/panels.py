@@ -39,6 +39,12 @@ def panels(d: Driver) -> None:
         d.press(key).frames(5)
         assert hello_imgui.current_layout_name() == workspace and docking.layout_name == workspace
         assert there in is_open() and ("Log" in is_open()) == (workspace == "Debug")
+    # The picture has its share of the window in each, also in one that was resized while another was shown.
+    for size, least in (((900, 600), (0.25, 0.25, 0.50)), ((1280, 800), (0.33, 0.33, 0.60))):
+        d.resize(*size)
+        for key, part in zip(("F3", "F4", "F2"), least):
+            width, height = d.press(key).frames(8).ui.picture.area
+            assert width * height >= part * size[0] * size[1], f"{d.ui.workspace} at {size}: {width} x {height}"
     d.show_panel("Plots").press("F3", "F2").frames(5)
     assert "Plots" in is_open(), "a workspace stays as it was left"
     d.press("B")
@@ -94,13 +100,13 @@ def looks(d: Driver) -> None:
 def hiding(d: Driver) -> None:
     """Tab leaves the picture alone, and brings back what was there, where it was; F11 fills the screen, and back."""
     d.resize(1280, 800).settle()
-    for label in ("Camera", "Experiment"):
+    for label in ("Camera", "Log"):
         d.show_panel(label)
     docking = d.app.params.docking_params
     docking.dockable_window_of_name("Saving").is_visible = False
     d.frames(4)
     before = _places_of_panels()
-    assert {"Camera", "Experiment", "Inspector"} < set(before)
+    assert {"Camera", "Log", "Inspector"} < set(before)
     d.press("Tab")
     there = _places_of_panels()
     assert set(there) == {PICTURE} and there[PICTURE][2] * there[PICTURE][3] > 0.9 * 1280 * 800

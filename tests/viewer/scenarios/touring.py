@@ -42,12 +42,14 @@ def _by_hand(d: Driver) -> None:
     d.expect("Press C twice")
     d.change(method="auto")
     assert not d.c.frame.statistics.shadow.dynamic_only
-    d.expect("Choose paper, the published method, above the picture, and then press C twice")
+    d.expect("Choose Paper, the published method, above the picture, and then press C twice")
     d.change(method="paper")
     d.press("C").settle()
     d.expect("Press C once more")
-    d.press("C").settle()
-    d.wait(lambda: tour.step is WHOLE, "culling, seen on again", 10.0)
+    with patch.object(tours, "SECONDS", 90.0):
+        d.press("C").expect("Done: the next step", patience=60.0)
+        assert "twice" not in d.text() and tour.step is COST, "it is told that it is done"
+        d.click(f"//Tour/{icons.ICON_FA_CHECK}  Done: the next step")
     d.press("2").wait(lambda: tour.step is MET, "the occlusion modes", 10.0)
     d.press("3").pause(0.6)
     assert tour.step is MET, "half of it"
@@ -74,6 +76,10 @@ def _by_hand(d: Driver) -> None:
     assert d.c.session.frame >= EXAMINED
     for command in NEXT.commands:
         assert d.command(command), "the tour's end offers it"
+    d.click(f"//Tour/{icons.ICON_FA_MAGNIFYING_GLASS_PLUS}  Figure 4").wait(
+        lambda: d.ui.workspace == "Measure", "it", 20.0
+    )
+    d.wait(lambda: d.c.runs.zoom_test is not None and d.c.runs.zoom_test.whole, "the figure", 60.0).press("F2").settle()
     d.click("//Tour/Close")
     assert tour.step is None and not d.c.session.state.pace.fixed_size, "pictures have the window's size again"
 

@@ -11,7 +11,7 @@ from tracer.culling.fate import Fate
 from tracer.frame import Frame, Settings
 from tracer.statistics import CutCounts, CutErrors, FrameStatistics, RayCounts, SaidByModes, ShadowCounts, WrongCounts
 from viewer.state import verified
-from viewer.state.savings import LEAST, InTurn, Standing, Tone, bar_of, in_words, sentence
+from viewer.state.savings import LEAST, InTurn, Standing, Tone, bar_of, in_words, placed, sentence
 
 
 def frame_by(method: str, verify: bool = False, part: float = 1.0, **counts: int) -> Frame:
@@ -117,6 +117,17 @@ def test_the_parts_of_the_bar_are_all_rays_that_are_due():
     ]  # fmt: skip
     assert "(§2.4)" in bar[0].in_words()
     assert bar_of(frame_by("paper", due=0)) == ()
+
+
+@pytest.mark.parametrize("width", [520.0, 680.0, 980.0, 1400.0])
+@pytest.mark.parametrize("rays", [{"culled": 150, "dynamic_only": 120}, {"culled": 300, "dynamic_only": 4}])
+def test_every_part_of_the_bar_is_named_however_narrow(rays: dict[str, int], width: float) -> None:
+    bar = bar_of(frame_by("paper", **rays))
+    pieces = list(placed(bar, 10.0, width, lambda text: 7.0 * len(text), 5.0))
+    labels = [(at, at + 7 * len(part.label), end, beside) for part, _, end, at, beside in pieces if at is not None]
+    assert len(labels) == len(bar) and all(beside or right <= end for _, right, end, beside in labels)
+    edges = [10.0, *(edge for left, right, *_ in labels for edge in (left, right)), 10.0 + width]
+    assert edges == sorted(edges), "none lies over another"
 
 
 def test_wrong_answers_stand_out_and_clusters_have_their_own_words():

@@ -60,11 +60,7 @@ def test_a_histogram_counts_its_pixels_and_nothing_else():
     found = histogram(values_in(frame, View.COLOR), rows, columns)
     part = color[rows, columns].reshape(-1, 3)
     assert found.counts.sum(axis=1).tolist() == [24, 24, 24] and (found.pixels, found.of) == (24, 24)
-    for figures, expected in (
-        (found.least, part.min(0)),
-        (found.largest, part.max(0)),
-        (found.mean, part.mean(0)),
-    ):
+    for figures, expected in ((found.least, part.min(0)), (found.largest, part.max(0)), (found.mean, part.mean(0))):
         assert figures == pytest.approx(tuple(expected))
     edges = np.linspace(found.low, found.high, found.counts.shape[1] + 1)
     assert np.array_equal(found.counts[1], np.histogram(part[:, 1], edges)[0])

@@ -32,7 +32,8 @@ def show(ui: Ui) -> None:
         return
     _place(ui)
     named_states.show_bookmarks(ui)
-    _moving(ui)
+    heading("Moving")
+    panel_rows(ui, "Camera", 5.0, {"playback_rate": _rate})
 
 
 def _place(ui: Ui) -> None:
@@ -59,11 +60,6 @@ def _place(ui: Ui) -> None:
     menus.button(ui, "Focus", icons.ICON_FA_CROSSHAIRS, columns=2)
     imgui.same_line()
     menus.button(ui, "Reset camera", icons.ICON_FA_ROTATE_LEFT, "Reset")
-
-
-def _moving(ui: Ui) -> None:
-    heading("Moving")
-    panel_rows(ui, "Camera", 5.0, {"playback_rate": _rate})
 
 
 def _rate(ui: Ui, one: Setting) -> None:

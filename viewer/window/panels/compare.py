@@ -53,9 +53,10 @@ def _controls(ui: Ui) -> None:
     with properties("comparison", 5.0) as shown:
         if shown:
             row("A is", "What the live picture, B, is compared with.")
-            kinds = ["a kept picture", "another method, live"]
-            changed, live = imgui.combo("##source", int(bool(state.second)), kinds)
-            if changed:
+            kinds = {False: "a kept picture", True: "another method, live"}
+            was = bool(state.second)
+            live = one_of_list("##source", kinds[was], ((kind, label, "") for kind, label in kinds.items()), was)
+            if live != was:
                 comparing.trace_by(comparing.other_method if live else "")
             if state.second:
                 row("A's method", "Each frame is traced a second time by this method, with its own modes and counters.")

@@ -16,7 +16,7 @@ from viewer.state.methods import about, groups, toggled, with_base
 from viewer.window import menus
 from viewer.window.setting_rows import panel_rows
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, em, fitted, outlined, paragraph, tooltip
+from viewer.window.widgets import ERROR, QUIET, dropdown, em, fitted, outlined, paragraph, tooltip
 
 _OF_MODES = ("settings.symmetric", "settings.zoom_factor")
 _NAMES = 18.0  # ems of the names of methods; sentences begin behind them
@@ -77,8 +77,7 @@ def method_list(ui: Ui, name: str, method: str, choose: Callable[[str], None], c
 
     Methods that have nothing to say of the scene are pale.  `combined`: additions are in it."""
     parsed = Method.parse(method)
-    room = imgui.calc_item_width() - imgui.get_frame_height() - 2.0 * imgui.get_style().frame_padding.x
-    if not imgui.begin_combo(name, fitted(parsed.title, room), int(imgui.ComboFlags_.height_largest)):
+    if not dropdown(name, parsed.title, int(imgui.ComboFlags_.height_largest)):
         tooltip(f"{parsed.title}\n{about(*parsed.kinds)}")
         return
 

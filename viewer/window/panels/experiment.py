@@ -13,11 +13,11 @@ from viewer.state.methods import BY_MODES, CERTIFIED, groups
 from viewer.state.plans import ExperimentPlan
 from viewer.util.numbers import saved_in_words
 from viewer.window.panels.culling import kinds_of_methods
-from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, go_to_experiment_frame, pointed_frame, wrong_axis
+from viewer.window.panels.plots import AXIS, COLORS, FLAGS, go_to_run_frame, pointed_frame, setup_legend, wrong_axis
 from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.ui import Ui
-from viewer.window.widgets import ERROR, QUIET, in_window_style, outlined, paragraph, properties, row, tooltip
+from viewer.window.widgets import ERROR, QUIET, dropdown, in_window_style, outlined, paragraph, properties, row, tooltip
 
 _USUAL = (REFERENCE, BY_MODES, CERTIFIED, "lightbuffer", "voxels")
 _PLOT, _TABLE = 16.0, 30.0  # ems of width; the table's first columns are what methods are compared by
@@ -57,7 +57,7 @@ def _methods(ui: Ui, plan: ExperimentPlan) -> None:
     """A list to be opened: a tick for each base, and for each way to add to those; the reference is always among
     them."""
     titles = ", ".join(map(title_of, in_order(plan.methods)))
-    opened = imgui.begin_combo("##methods", titles, int(imgui.ComboFlags_.height_largest))
+    opened = dropdown("##methods", titles, int(imgui.ComboFlags_.height_largest))
     tooltip(f"{titles}\nOn the command line: {','.join(in_order(plan.methods))}")
     if not opened:
         return
@@ -101,7 +101,8 @@ def _table(ui: Ui, run: Experiment, results: Results) -> None:
 def _plot(ui: Ui, run: Experiment, results: Results) -> None:
     """Savings of each method but the reference, steps thick and tests thin, and its wrong answers, over the frames."""
     savings = ui.cached("savings", results, 0, lambda: _savings(results))
-    if not implot.begin_plot(f"saved (thick: steps, thin: tests)##{id(run)}", ImVec2(-1.0, -1.0), FLAGS):
+    size = imgui.get_content_region_avail()
+    if not implot.begin_plot(f"saved (thick: steps, thin: tests)##{id(run)}", size, FLAGS):
         return
     frames = np.array(results.frames, np.float64)
     values = [curve for curves in savings.values() for curve in curves]
@@ -116,8 +117,8 @@ def _plot(ui: Ui, run: Experiment, results: Results) -> None:
     implot.setup_axes_limits(-0.5, last, min(1.1 * bottom, 0.0), max(1.12 * top, _LEAST_TOP), once)
     most_wrong = max(int(max(figures["wrong"])) for figures in results.methods.values())
     if run.settings.verify and most_wrong:
-        wrong_axis(most_wrong, once)
-    implot.setup_legend(implot.Location_.south, LEGEND)
+        wrong_axis(most_wrong, once, size.y)
+    setup_legend(list(savings), size)
     for number, (method, curves) in enumerate(savings.items()):
         if run.settings.verify and most_wrong:
             _plot_wrong(np.array(results.methods[method]["wrong"], np.float64), frames, method if number else "")
@@ -133,7 +134,7 @@ def _plot(ui: Ui, run: Experiment, results: Results) -> None:
         for method, curves in savings.items():
             steps, tests = (in_window_style(saved_in_words(curve[place] / 100.0)) for curve in curves)
             said.append(f"{title_of(method)}: steps {steps}, tests {tests}")
-    go_to_experiment_frame(ui, run, results, place, said)
+    go_to_run_frame(ui, run, results, place, said)
 
 
 def _savings(results: Results) -> dict[str, tuple[np.ndarray, np.ndarray]]:

@@ -19,12 +19,7 @@ from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Link, Words, plain
 from tracer.scene.model import Material, Scene
 from viewer.services.inspector import with_origins
-from viewer.state.palette import (
-    FATES,
-    OCCLUSION,
-    SHADOW,
-    Class,
-)
+from viewer.state.palette import FATES, OCCLUSION, SHADOW, Class
 from viewer.state.picking import Pick, shadow_mode_of, unit_of, wrong_at
 from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import several

@@ -15,7 +15,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, tooltip_at, width_of
 
 _MARGIN = 0.5  # ems between the legend and the picture's edge
-_MOST = 0.62  # of the picture's width, and of its height
+_MOST, _MOST_AREA = 0.62, 0.15  # of the picture's width, of its height, and of all of it
 
 
 @dataclass
@@ -85,7 +85,8 @@ def show(ui: Ui, area: Area) -> None:
     if legend is None or not options.legend or in_sight(ui):
         return
     width, height = end.x - corner.x, end.y - corner.y
-    layout = fitting(legend, width_of, imgui.get_text_line_height(), _MOST * width, _MOST * height)
+    line, most = imgui.get_text_line_height(), _MOST_AREA * width * height
+    layout = fitting(legend, width_of, line, _MOST * width, _MOST * height, most)
     if layout is None:
         return
     state.in_picture = True

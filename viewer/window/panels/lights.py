@@ -16,7 +16,7 @@ from tracer.scene.lights import Light, as_lamps, number_of
 from tracer.scene.model import Scene
 from tracer.util.setting import Setting
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, count, em, one_of_list, paragraph, row, seen_rows, swatch, tooltip
+from viewer.window.widgets import QUIET, count, dropdown, em, one_of_list, paragraph, row, seen_rows, swatch, tooltip
 
 FEW = 8
 """Lights that are listed without a field to find them."""
@@ -80,7 +80,7 @@ def combo(
     ui: Ui, place: str, chosen: int | None, choose: Callable[[int], None], all_of_them: Callable[[], None] | None = None
 ) -> None:
     """A light to choose, or `all_of_them` together, which is None of them."""
-    if imgui.begin_combo("##light", "all lights" if chosen is None else ui.light_name(chosen)):
+    if dropdown("##light", "all lights" if chosen is None else ui.light_name(chosen)):
         if imgui.is_window_appearing():
             ui.state(LightFilters).texts[place] = ""
         if all_of_them is not None and imgui.selectable("all lights", chosen is None)[0]:

@@ -18,16 +18,7 @@ from viewer.state.pixels import STEP, panned
 from viewer.state.views import Record
 from viewer.util.numbers import whole_percent
 from viewer.window.menus import ANY_POPUP
-from viewer.window.panels import (
-    legend,
-    overlays,
-    pixels,
-    savings,
-    sides,
-    status,
-    toolbar,
-    what_if,
-)
+from viewer.window.panels import legend, overlays, pixels, savings, sides, status, toolbar, what_if
 from viewer.window.panels.area import Area, inside, pointer, size_of, write_lines
 from viewer.window.panels.view import show_words_in_space
 from viewer.window.setting_rows import ALL

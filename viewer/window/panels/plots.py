@@ -20,7 +20,7 @@ from viewer.state.palette import FATES, LIT, PARTLY_LIT
 from viewer.util.numbers import whole_percent
 from viewer.window.style import BLUE, GREEN, GREY, ORANGE, PINK, SKY, YELLOW
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, tooltip, tooltip_at
+from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, tooltip, tooltip_at, width_of
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,10 @@ RECENT = 10.0
 """Seconds before the newest frame that can be shown alone."""
 _LEAST_WIDTH = 15.0
 """Ems of a plot; what finds no room beside is below, and the panel scrolls."""
+_LOW, _LEGEND_SQUARE = 9.0, 1.6  # ems of height of a low plot, and of width beside a label of the legend
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
-LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_menus)
+LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.no_menus)
 COLORS = (BLUE, ORANGE, GREEN, SKY, PINK, YELLOW)
 _PER_PIXEL = (
     "Counts are divided by pixels, as pictures differ in size, and in motion only some pixels are shaded: those of "
@@ -82,11 +83,23 @@ def whole_numbers(first: float, last: float, width: float) -> None:
     implot.setup_axis_ticks(implot.ImAxis_.x1, [float(tick) for tick in ticks], [str(tick) for tick in ticks])
 
 
-def wrong_axis(most: int, condition: int) -> None:
-    """Set up a right-hand axis y2 for bars of `most` at most, which stay in the lowest third, with whole numbers."""
+def setup_legend(labels: Sequence[str], size: ImVec2) -> None:
+    """Put the legend of these labels where a plot of that size has room for all: below it, or beside a low one."""
+    row = sum(width_of(label) + em(_LEGEND_SQUARE) for label in labels)
+    if size.y < em(_LOW) and size.x > em(_LEAST_WIDTH):
+        implot.setup_legend(implot.Location_.east, LEGEND)
+    else:
+        across = int(implot.LegendFlags_.horizontal) if row <= size.x else 0
+        implot.setup_legend(implot.Location_.south, LEGEND | across)
+
+
+def wrong_axis(most: int, condition: int, height: float) -> None:
+    """Set up a right-hand axis y2 for bars of `most` at most, which stay in the lowest third of a plot so high, with as
+    many whole numbers as that has room for."""
     implot.setup_axis(implot.ImAxis_.y2, "wrong", AXIS | int(implot.AxisFlags_.aux_default))
     implot.setup_axis_limits(implot.ImAxis_.y2, 0.0, 3.0 * max(most, 1), condition)
-    ticks = sorted({0, max(1, most // 2), max(1, most)})
+    lines = (height - em(5.0)) / 3.0 / imgui.get_text_line_height()
+    ticks = sorted({max(1, most), *((0,) if lines >= 1.0 else ()), *((max(1, most // 2),) if lines >= 2.0 else ())})
     implot.setup_axis_ticks(implot.ImAxis_.y2, [float(tick) for tick in ticks], [count(tick) for tick in ticks])
 
 
@@ -130,11 +143,14 @@ def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
     values_of = history.per_pixel if plot.per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
-    shown = implot.begin_plot(f"{plot.title}{' per pixel' if plot.per_pixel else ''}##{plot.title}", size, FLAGS)
+    of = " per pixel" if plot.per_pixel and width_of(f"{plot.title} per pixel") <= size.x else ""
+    shown = implot.begin_plot(f"{plot.title}{of}##{plot.title}", size, FLAGS)
     implot.pop_style_var(2)
     if not shown:
         return
     curves = [(label, values_of(name)[start:], color) for label, name, color in plot.curves]
+    if plot.stacked:  # without a fate that no ray had
+        curves = [one for one in curves if one[1].any()] or curves[-1:]
     number, many = history.first + start, len(history) - start
     first, last = number - 0.5, number + max(many - 1, 10) + 0.5
     top = float(values_of("due")[start:].max()) if plot.stacked else max(float(y.max()) for _, y, _ in curves)
@@ -146,7 +162,7 @@ def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
         implot.setup_axis_scale(implot.ImAxis_.y1, int(implot.Scale_.log10))
         limits = (1.0, 10.0 * max(top, 1.0))
     implot.setup_axes_limits(first, last, *limits, int(imgui.Cond_.always))
-    implot.setup_legend(implot.Location_.south, LEGEND)
+    setup_legend([label for label, _, _ in curves], size)
     if plot.stacked:
         _stack(curves, first)
     else:
@@ -167,12 +183,11 @@ def as_steps(values: NDArray[np.float64], first: float) -> tuple[NDArray[np.floa
 
 
 def _stack(curves: list[tuple[str, NDArray[np.float64], ImVec4]], first: float) -> None:
-    """Areas one above the other, which together are all rays that were due; a fate that no ray had is left out."""
+    """Areas one above the other, which together are all rays that were due."""
     frames, below = as_steps(np.zeros(len(curves[0][1])), first)
-    for number, (label, values, color) in enumerate(curves):
+    for label, values, color in curves:
         above = below + np.repeat(values, 2)
-        if values.any() or number == len(curves) - 1:
-            implot.plot_shaded(label, frames, below, above, implot.Spec(fill_color=color, fill_alpha=0.85))
+        implot.plot_shaded(label, frames, below, above, implot.Spec(fill_color=color, fill_alpha=0.85))
         below = above
 
 
@@ -202,7 +217,7 @@ def _go_to_frame(ui: Ui, number: int, values: list[str]) -> None:
         c.navigator.go(number)
 
 
-def go_to_experiment_frame(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
+def go_to_run_frame(ui: Ui, run: Experiment, results: Results, place: int | None, values: list[str]) -> None:
     """Do the same for the frames of an experiment, by the method that it shows."""
     c = ui.controller
     if place is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import accumulate
 from typing import TypeVar
 
 from imgui_bundle import ImVec2, imgui
@@ -125,14 +126,18 @@ def results_table(
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.scroll_y | imgui.TableFlags_.scroll_x
     lines = (len(rows) + 1) * (imgui.get_text_line_height() + 2.0 * imgui.get_style().cell_padding.y)
     size = ImVec2(0.0, lines + imgui.get_style().scrollbar_size if fits else 0.0)
+    room = imgui.get_content_region_avail()
+    scrolls = not fits and lines + imgui.get_style().scrollbar_size > room.y
     if not imgui.begin_table(name, len(columns), int(flags), size):
         return
     imgui.table_setup_scroll_freeze(1, 1)
     some = [*rows[:_MEASURED], *rows[_MEASURED:][-_MEASURED:]]
+    widths = []
     for column in columns:
         texts = [column.heading, *(in_window_style(column.cell(one)) for one in some)]
         width = max(imgui.calc_text_size(text).x for text in texts) + 1.0
-        width = min(width, em(_LONGEST)) if column.text else width
+        widths.append(min(width, em(_LONGEST)) if column.text else width)
+    for column, width in zip(columns, _whole_columns(widths, room.x - scrolls * imgui.get_style().scrollbar_size)):
         imgui.table_setup_column(column.heading, int(imgui.TableColumnFlags_.width_fixed), width)
     for column in columns:
         imgui.table_next_column()
@@ -151,6 +156,14 @@ def results_table(
             if tip is not None:
                 tooltip(tip(rows[number]))
     imgui.end_table()
+
+
+def _whole_columns(widths: list[float], room: float) -> list[float]:
+    """Return widths with those columns wider that are inside the room, so that its edge cuts none."""
+    gap = 2.0 * imgui.get_style().cell_padding.x
+    inside = sum(end <= room + gap for end in accumulate(width + gap for width in widths))
+    left = room + gap - sum(widths[:inside]) - inside * gap if inside < len(widths) else 0.0
+    return [width + (left / inside if place < inside else 0.0) for place, width in enumerate(widths)]
 
 
 def _heading(ui: Ui, run: Experiment | ZoomTest | Hunt) -> None:

@@ -80,7 +80,7 @@ def show_film(ui: Ui) -> None:
 def _way(ui: Ui, films: Films) -> None:
     """Along what, how long, and how fast."""
     plan, marks = films.plan, len(ui.controller.bookmarks.all)
-    with properties("way", 5.0) as shown:
+    with properties("way", 4.0) as shown:
         if not shown:
             return
         row("Along", "The frames of the animation, or a flight through the bookmarks at an even speed.")

@@ -8,14 +8,14 @@ from tracer.method import title_of
 from viewer.services.controller import Controller
 from viewer.services.frame_scheduler import Activity
 from viewer.state.palette import DARK, FATES, LIGHT, label_color
-from viewer.state.savings import LONGEST, WOULD_OPACITY, Clause, Part, Standing, Tone, bar_of, places, sentence
+from viewer.state.savings import LONGEST, WOULD_OPACITY, Clause, Part, Standing, Tone, bar_of, placed, sentence
 from viewer.state.views import View
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, em, fitted, packed, tooltip, width_of, write
 
 LEAST = 14.0
 """Ems of height that there must be for the picture, sentence and bar; with less, these are not shown."""
-_GAP, _PAD = 0.3, 0.35  # ems between sentence and bar, and beside the words of a part
+_GAP, _PAD = 0.3, 0.35  # ems between sentence and bar, and beside the label of a part
 
 
 def standing(c: Controller) -> Standing:
@@ -69,24 +69,27 @@ def _write(ui: Ui, clauses: tuple[Clause, ...], start: ImVec2, width: float, lin
 
 
 def _draw(ui: Ui, bar: tuple[Part, ...], width: float) -> None:
-    """The parts beside each other, each as wide as its share; a click shows the pixels of one."""
-    corner, high = imgui.get_cursor_screen_pos(), imgui.get_text_line_height() + em(0.1)
-    draw, next_light = imgui.get_window_draw_list(), f"Next light{ui.key('Next light')}"
-    draw.add_rect_filled(corner, ImVec2(corner.x + width, corner.y + high), packed(DARK), em(0.15))
-    for part, left, right in places(bar, corner.x, corner.x + width):
-        at, end = ImVec2(left, corner.y), ImVec2(max(right, left + 1), corner.y + high)
-        imgui.set_cursor_screen_pos(at)
-        if imgui.invisible_button(f"{part.name}##savings", ImVec2(end.x - at.x, high)):
+    """The parts side by side, each as wide as its share; a click shows the pixels of one."""
+    corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    high, next_light = imgui.get_text_line_height() + em(0.1), f"Next light{ui.key('Next light')}"
+    for part, left, right, label_at, beside in placed(bar, corner.x, width, width_of, em(_PAD)):
+        inset, right = 0.5 * (high - (right - left)) if beside else 0.0, max(right, left + 1)
+        edge = right if label_at is None else max(right, label_at + width_of(part.label))
+        imgui.set_cursor_screen_pos(ImVec2(left, corner.y))
+        if imgui.invisible_button(f"{part.name}##{'beside' if beside else 'savings'}", ImVec2(edge - left, high)):
             _show_pixels(ui, part)
-        draw.add_rect_filled(at, end, packed(FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0))
+        start, end = ImVec2(left, corner.y + inset), ImVec2(right, corner.y + high - inset)
+        draw.add_rect_filled(start, end, packed(DARK))
+        draw.add_rect_filled(start, end, packed(FATES[part.fate].color, WOULD_OPACITY if part.would else 1.0))
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-        if imgui.is_item_hovered() or ui.fate_shown is part.fate:
-            draw.add_rect(at, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
+        if imgui.is_item_hovered() or (ui.fate_shown is part.fate and not beside):
+            draw.add_rect(start, end, imgui.get_color_u32(imgui.Col_.text), 0.0, thickness=2.0)
         tooltip(f"{part.in_words()}\nClick: the pixels whose rays to the chosen light these are. {next_light}")
-        text = part.label(width_of, end.x - at.x - 2.0 * em(_PAD))
-        color = LIGHT if part.would else label_color(FATES[part.fate].color)
-        draw.add_text(ImVec2(at.x + round(em(_PAD)), at.y + round(em(0.05))), packed(color), text)
+        if label_at is not None:
+            on_color = packed(LIGHT if part.would else label_color(FATES[part.fate].color))
+            color = imgui.get_color_u32(imgui.Col_.text) if beside else on_color
+            draw.add_text(ImVec2(label_at, corner.y + round(em(0.05))), color, part.label)
 
 
 def _show_pixels(ui: Ui, part: Part) -> None:

@@ -15,17 +15,7 @@ from viewer.window import menus
 from viewer.window.command import Command, Kind
 from viewer.window.panels import lights
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import (
-    QUIET,
-    WARNING,
-    clipped,
-    count,
-    heading,
-    paragraph,
-    properties,
-    value,
-    wide_button,
-)
+from viewer.window.widgets import QUIET, WARNING, clipped, count, heading, paragraph, properties, value, wide_button
 
 
 def show(ui: Ui) -> None:

@@ -10,7 +10,7 @@ from viewer.window import menus
 from viewer.window.panels import lights
 from viewer.window.panels.culling import method_list
 from viewer.window.ui import Ui
-from viewer.window.widgets import QUIET, em, right, tooltip
+from viewer.window.widgets import QUIET, dropdown, em, right, tooltip
 
 _METHODS, _VIEWS, _LIGHTS = 11.0, 11.0, 9.0  # ems of the lists
 _GAP = 1.0
@@ -53,7 +53,7 @@ def _name(name: str, tip: str) -> None:
 def _views(ui: Ui) -> None:
     """Show all views to choose from, each with its key."""
     chosen = ui.controller.session.draw.view
-    if not imgui.begin_combo("##view", chosen.label, int(imgui.ComboFlags_.height_largest)):
+    if not dropdown("##view", chosen.label, int(imgui.ComboFlags_.height_largest)):
         return
     for view in View:
         if imgui.selectable(f"{view.label}##{view.value}", view is chosen)[0]:

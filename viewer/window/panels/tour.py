@@ -11,7 +11,6 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, wide_button
 
 _ICONS = (icons.ICON_FA_FOLDER_OPEN, icons.ICON_FA_TABLE, icons.ICON_FA_MAGNIFYING_GLASS_PLUS, icons.ICON_FA_BOOK)
-_AGAIN = "End the tour. The menu Help starts it again."
 
 
 def show(ui: Ui) -> None:
@@ -26,14 +25,17 @@ def show(ui: Ui) -> None:
             menus.button(ui, name, _ICONS[number], columns=2)
             if number % 2 == 0:
                 imgui.same_line()
-        if wide_button("Close", _AGAIN):
+        if wide_button("Close"):
             tour.end()
             return
-    else:  # above the text, so that no text moves them
-        if wide_button(f"{icons.ICON_FA_PLAY}  Show me", "Do this step for me.", 2):
+    elif tour.is_done:
+        if wide_button(f"{icons.ICON_FA_CHECK}  Done: the next step"):
+            tour.skip()
+    else:  # above the text, so that no text moves them, and without tips, which would cover it
+        if wide_button(f"{icons.ICON_FA_PLAY}  Show me", columns=2):
             tour.show()
         imgui.same_line()
-        if wide_button("Skip", "Go on to the next step.", 2):
+        if wide_button("Skip", columns=2):
             tour.skip()
     text = tour.text(step) if ui.controller.frame is not None else "You can begin as soon as there is a picture."
     paragraph(text, QUIET)

@@ -12,16 +12,16 @@ from tracer.experiments.titles import happenings, verdict
 from tracer.experiments.zoom import Approach, Results, Step
 from viewer.output.reports import STEPS, changes_in_words
 from viewer.services.runs import RecordedZoomTest
-from viewer.window.panels.plots import AXIS, COLORS, FLAGS, LEGEND, whole_numbers, wrong_axis
+from viewer.window.panels.plots import AXIS, COLORS, FLAGS, setup_legend, whole_numbers, wrong_axis
 from viewer.window.panels.runs import Part, results_table, show_run
 from viewer.window.setting_rows import plan_rows
 from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, WARNING, clipped, count, em, paragraph, properties, row, tooltip
 
-_PLOT, _TABLE = 14.0, 15.0  # ems of width
-_LOW = 8.5  # ems of height below which a plot has no legend
-_FILM, _LEAST_FILM, _MOST_FILM = 0.45, 3.2, 9.0  # the filmstrips' part of the height, and ems of one
+_PLOT, _FILMS, _TABLE = 16.0, 9.0, 21.0  # ems of width
+_LEAST_FILM, _MOST_FILM = 3.2, 9.0  # ems of height
+_CHANGES = "modes change"
 _LARGE = 20.0  # ems of a picture that is pointed at
 
 
@@ -29,7 +29,9 @@ def show(ui: Ui) -> None:
     """The panel: how to go, the counts on the way, and what happened at which step."""
     test, parts = ui.controller.runs.zoom_test, list[Part]()
     if test is not None and (results := test.results) is not None:
-        parts.append(("Plot", _PLOT, lambda: _plot_and_films(ui, test, results)))
+        approaches = [approach for approach in results.approaches if approach.steps]
+        parts.append(("Plot", _PLOT, lambda: _plot(ui, test, approaches)))
+        parts.append(("Pictures", _FILMS, lambda: _films(ui, test, approaches)))
         parts.append(("Table", _TABLE, lambda: _table(ui, results)))
     show_run(
         ui, test, lambda: _plan(ui), ui.controller.runs.start_zoom_test,
@@ -55,13 +57,11 @@ def _plan(ui: Ui) -> None:
         plan_rows(ui, plan, "size")
 
 
-def _plot_and_films(ui: Ui, test: RecordedZoomTest, results: Results) -> None:
-    """A plot, and under it the recorded pictures as in the paper's Figure 4, in a row for each factor."""
-    approaches, room = [a for a in results.approaches if a.steps], imgui.get_content_region_avail()
-    films = min(max(_FILM * room.y, em(_LEAST_FILM)), len(approaches) * em(_MOST_FILM))
-    _plot(ui, test, approaches, ImVec2(room.x, max(room.y - films - imgui.get_style().item_spacing.y, em(6.0))))
-    if imgui.begin_child("films", ImVec2(room.x, films), 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
-        height = max(imgui.get_content_region_avail().y / max(len(approaches), 1) - em(0.3), em(_LEAST_FILM))
+def _films(ui: Ui, test: RecordedZoomTest, approaches: list[Approach]) -> None:
+    """The recorded pictures as in the paper's Figure 4, in a row for each factor."""
+    if imgui.begin_child("films", ImVec2(0.0, 0.0), 0, int(imgui.WindowFlags_.horizontal_scrollbar)):
+        room = imgui.get_content_region_avail().y / max(len(approaches), 1) - em(0.3)
+        height = min(max(room, em(_LEAST_FILM)), em(_MOST_FILM))
         for approach in approaches:
             for shot in test.filmstrip.of(approach.factor):
                 if shot.number < len(approach.steps):
@@ -104,10 +104,11 @@ def _show_step(ui: Ui, test: RecordedZoomTest, factor: float, step: Step) -> Non
     imgui.end_tooltip()
 
 
-def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVec2) -> None:
+def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach]) -> None:
     """The primitive's pixels on a logarithmic scale, and for each factor the count past which it is examined again,
     marks where modes change, and wrong pixels as bars."""
-    if not approaches or not implot.begin_plot("##steps", size, FLAGS | _no_legend(size)):
+    size = imgui.get_content_region_avail()
+    if not approaches or not implot.begin_plot("##steps", size, FLAGS):
         return
     last = test.frames / len(test.factors) - 0.3
     steps = max((approach.steps for approach in approaches), key=len)
@@ -119,22 +120,18 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach], size: ImVe
     implot.setup_axis_format(implot.ImAxis_.y1, "%.0f")
     always = int(imgui.Cond_.always)
     implot.setup_axes_limits(-0.7, last, 0.3 * float(pixels.min()), 6.0 * most, always)
-    wrong_axis(max(1, *(approach.most_wrong for approach in approaches)), always)
-    implot.setup_legend(implot.Location_.south, LEGEND)
+    wrong_axis(max(1, *(approach.most_wrong for approach in approaches)), always, size.y)
+    setup_legend([*(f"factor {approach.factor:g}" for approach in approaches), _CHANGES], size)
     for place, approach in enumerate(approaches):
         _plot_factor(approach, place, len(approaches))
     numbers = np.arange(len(steps), dtype=np.float64)
-    implot.plot_line("pixels", numbers, pixels, implot.Spec(line_color=GREY, line_weight=1.8))
+    implot.plot_line("##pixels", numbers, pixels, implot.Spec(line_color=GREY, line_weight=1.8))
     if implot.is_plot_hovered():
         number = min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)
         _show_step(ui, test, approaches[0].factor, steps[number])
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
             ui.controller.go_to_step(steps[number])
     implot.end_plot()
-
-
-def _no_legend(size: ImVec2) -> int:
-    return int(implot.Flags_.no_legend) if size.y < em(_LOW) else 0
 
 
 def _plot_factor(approach: Approach, place: int, of: int) -> None:
@@ -151,7 +148,7 @@ def _plot_factor(approach: Approach, place: int, of: int) -> None:
     counts = _counts(step.pixels for step in steps if step.changes)
     mark = implot.Spec(marker=int(implot.Marker_.diamond), marker_size=em(0.24), marker_fill_color=color,
                        marker_line_color=MARK)  # fmt: skip
-    implot.plot_scatter(f"modes change##{name}" if place else "modes change", changed, counts, mark)
+    implot.plot_scatter(f"##{_CHANGES} {name}" if place else _CHANGES, changed, counts, mark)
 
 
 def _counts(pixels: Iterable[int]) -> np.ndarray:
