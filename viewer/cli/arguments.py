@@ -6,7 +6,6 @@ A function that reads a value raises ValueError in one line.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import re
 import sys
@@ -24,6 +23,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.limits import LARGEST
 from tracer.util.setting import Setting
 from tracer.util.suggest import similar
+from viewer.state.codec import from_text
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import Record, View
 from viewer.util.messages import ERROR, say
@@ -138,10 +138,10 @@ def _json(text: str, start: str, most: int) -> Any:
     try:
         if not text.lstrip().startswith(start):
             text = read_regular(Path(text), most).decode("utf-8")
-        return json.loads(text)
+        return from_text(text)
     except OSError as error:
         raise ValueError(f"neither JSON nor a file that can be read: {name}: {error.strerror or error}") from None
-    except (ValueError, RecursionError):
+    except ValueError:
         raise ValueError(f"{name} is not JSON") from None
 
 

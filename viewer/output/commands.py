@@ -10,7 +10,6 @@ from __future__ import annotations
 import base64
 import json
 import math
-import shlex
 import zlib
 from collections.abc import Sequence
 from pathlib import Path
@@ -71,21 +70,6 @@ def words(state: ViewState, scene: Scene | None, output: str, folders: Sequence[
     for folder in folders:
         found += ["--folder", str(folder.absolute())]
     return found
-
-
-def shell_line(words: Sequence[str]) -> str:
-    """Return words as a shell takes them, and with nothing in them that a terminal obeys."""
-    return " ".join(shlex.quote(word) if word.isprintable() else f"$'{''.join(map(_escaped, word))}'" for word in words)
-
-
-def _escaped(letter: str) -> str:
-    """A letter between $' and ', by its code where it cannot be seen; of a byte that is no text the byte."""
-    if letter in "\\'":
-        return f"\\{letter}"
-    code = ord(letter)
-    if letter.isprintable():
-        return letter
-    return f"\\x{code & 0xFF:02x}" if code < 0x80 or 0xDC80 <= code <= 0xDCFF else f"\\U{code:08x}"
 
 
 def options(state: ViewState, scene: Scene | None = None) -> list[str]:

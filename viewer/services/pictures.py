@@ -10,6 +10,7 @@ from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
+from tracer.util.text import shell_line
 from viewer.output import capture, commands, exr, other_programs
 from viewer.output.commands import BUILT, cannot_come_back, needs_history
 from viewer.services import stills
@@ -115,7 +116,7 @@ class Pictures:
             return None
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
         words = commands.words(state, self._session.scene, name, self._loader.folders)
-        line = commands.shell_line(["shadowcull", *words])
+        line = shell_line(["shadowcull", *words])
         why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != BUILT else ""
         self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {line}")
         return line

@@ -6,11 +6,11 @@ parts lie: boxes of colour and lines of text, in the unit in which `measure` giv
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from tracer.util.text import wrapped
 from viewer.state.palette import LIGHT, Color, color_map, signed_map
 
 
@@ -214,22 +214,3 @@ def _scale_width(legend: Legend, measure: Measure, line: float) -> float:
     scale = legend.scale
     ends = 2.0 * max(measure(scale.low), measure(scale.high)) + measure(scale.middle)
     return max(ends + 2.0 * line, 11.0 * line)
-
-
-def wrapped(text: str, measure: Measure, width: float) -> list[str]:
-    """A text in lines that are no wider than that; a word that is too long by itself is broken where it must be."""
-    lines = [""]
-    for word in text.split():
-        if measure(longer := f"{lines[-1]} {word}".strip()) <= width:
-            lines[-1] = longer
-            continue
-        fits = 1  # letters: twice as many as long as they fit, so that no long part is measured often
-        while fits < len(word):
-            if measure(word[: 2 * fits]) <= width:
-                fits *= 2
-                continue
-            fits += bisect_left(range(fits + 1, 2 * fits), True, key=lambda letters: measure(word[:letters]) > width)
-            lines.append(word[:fits])
-            word, fits = word[fits:], 1
-        lines.append(word)
-    return list(filter(None, lines))

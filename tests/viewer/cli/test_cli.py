@@ -17,7 +17,6 @@ import trimesh
 from PIL import Image
 
 from tests.commands import CAMERA, ROOM, Run, pixels
-from tests.platforms import linux_only
 from tests.terminal import Terminal
 from tracer.frame import Settings
 from tracer.scene.load import load_scene
@@ -303,12 +302,3 @@ def test_output_that_nobody_reads(room: Path) -> None:
     command = f"{sys.executable} -m viewer info {room} | true"
     done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
-
-
-@linux_only
-@pytest.mark.parametrize("option", ["--version", "--help"])
-def test_a_full_disk_is_said_of_help_too(option: str) -> None:
-    with open("/dev/full", "w") as full:
-        command = [sys.executable, "-m", "viewer", option]
-        done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True)
-    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "No space left" in done.stderr

@@ -21,7 +21,6 @@ RENDER = "render room.aff -o x.png"
 SMALL = "bench figure4 --path-frames 6 --size 48x32"
 FAR = '{"position": [1e300, 0, 0], "direction": [0, 0, -1], "up": [0, 1, 0], "angle": 40}'
 AWAY = '{"position": [0, 0, 20], "direction": [0, 0, 1]}'
-DEEP = 10**5 * '"a": {'
 READ, TRACED = "viewer.cli.options.load_visible_scene", "viewer.cli.options.prepare_kernels"
 
 MISTAKES = {
@@ -62,8 +61,7 @@ MISTAKES = {
         ("--size 999999x999999", "too many: 67,108,864 at most"),
         ("--size \x1b]0;title\x07", r"\x1b]0;title\x07"),
         ("--samples 0", "0 is not a whole number from 1 to 4096"),
-        ("--lamp-radius -0.1", "argument --lamp-radius: -0.1 is not a number from 0 to 1e+09"),
-        ("--lamp-radius 1e308", "from 0 to 1e+09"),
+        ("--lamp-radius 1e308", "argument --lamp-radius: 1e308 is not a number from 0 to 1e+09"),
         ("--lamp-samples 2.5", "argument --lamp-samples: 2.5 is not a whole number from 1 to 1024"),
         ("--method magic", "invalid choice: 'magic'"),
         ("--method paper,none", "invalid choice: 'paper;none'"),
@@ -91,7 +89,6 @@ MISTAKES = {
         ("--camera {bad", '--camera: {bad is not JSON; give a camera like {"position"'),
         ("--camera {}", "--camera: a camera's position"),
         (f"--camera '{AWAY.replace('20', 'true')}'", "a camera needs lists of numbers"),
-        (f"--camera '{'{' + DEEP}'", "is not JSON"),
         (f"--method {10**5 * 'x'}", "xxx ... "),
         (f"--camera '{FAR}'", "a camera's position lies within 1e+09"),
         ("--camera nowhere.json", "neither JSON nor a file"),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from datetime import datetime
 from pathlib import Path
 
@@ -11,22 +9,19 @@ import numpy as np
 import pytest
 from PIL import Image, PngImagePlugin
 
-from tests.platforms import posix_only
 from tracer.scene.model import Camera
 from tracer.settings import Settings
-from viewer.output import capture, commands
+from viewer.output import capture
 from viewer.output.overlays import with_caption
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
 from viewer.state.view_state import ViewState
 from viewer.state.views import View
-from viewer.views.legend import wrapped
 
 NOW = datetime(2024, 5, 31, 14, 5, 9)
 VALUES = {"scene": "kitchen", "view": "shadow", "frame": 7, "seconds": 1.25, "method": "paper", "light": 2,
           "width": 640, "height": 480}  # fmt: skip
 PIXELS = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
-
 
 CAMERA = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 STATE = ViewState(
@@ -91,7 +86,6 @@ def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path):
 
 
 def test_a_state_that_is_none_is_refused_in_one_line(tmp_path: Path):
-    """What is no picture, and what is none of ours, the command line promises."""
     for carried, why in (('{"state": [1, 2]}', "no saved state in it"), ('{"a": ' * 10**5, "nested too deeply")):
         info = PngImagePlugin.PngInfo()
         info.add_itxt("shadowcull", carried)
@@ -118,24 +112,3 @@ def test_a_caption_breaks_where_it_must() -> None:
     assert np.array_equal(one[:90], pixels) and with_caption(pixels, "") is pixels
     strip = with_caption(pixels, "W" * 60)[90:]
     assert (strip[:, :2] == 255).all() and (strip[:, -2:] == 255).all(), "nothing is cut at the edges"
-
-
-def test_a_word_of_any_length_is_broken_without_measuring_it_letter_by_letter() -> None:
-    measured: list[str] = []
-
-    def measure(text: str) -> float:
-        measured.append(text)
-        return 7.0 * len(text)
-
-    lines = wrapped(f"before {'W' * 10_000} after", measure, 100.0)
-    assert lines[0] == "before" and set(lines[1:-1]) == {14 * "W"} and lines[-1] == f"{10_000 % 14 * 'W'} after"
-    assert sum(map(len, measured)) < 20 * 10_000
-
-
-@posix_only
-def test_words_for_a_shell_come_back_and_command_no_terminal() -> None:
-    words = ["plain", "", "it's", "a\\b", "\x1b]0;title\x07", "line\nnext\u202e'", os.fsdecode(b"caf\xe9.aff"), "日本"]
-    line = commands.shell_line(words)
-    assert line.isprintable()
-    said = subprocess.run(["bash", "-c", f"printf '%s\\0' {line}"], capture_output=True, env={"LC_ALL": "C.UTF-8"})
-    assert [os.fsdecode(word) for word in said.stdout.split(b"\0")[:-1]] == words
