@@ -1,4 +1,9 @@
-"""A scene's primitives as kernels read them: what every acceleration structure is built over."""
+"""A scene's primitives as kernels read them: what every acceleration structure is built over.
+
+Their attributes are what shading reads of each, in a row of 64 bytes, the size of a cache line; rows of quadrics hold
+no normals, since those depend on the point.  Millions of triangles are laid out a part after the other: it takes
+seconds, and whoever waits may give up in between.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +21,64 @@ from tracer.scene.arrays import BLOCK, Float32, Float64, Int32, Report
 from tracer.scene.bounds import extent, quadric_boxes
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Scene, SceneObject, Triangles
+
+# Columns of attributes: the normals of three corners; the triangle's own normal, of any length; and, as the bits of
+# int32, the numbers of its object, its material and its texture (-1 for none).
+CORNER_NORMALS, FACE_NORMAL, OBJECT, MATERIAL, TEXTURE = 0, 9, 12, 13, 14
+COLUMNS = 16
+
+
+def edge_products(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Cross products (t, 3) float32 of the two edges of triangles (t, 9), corner and edges: normals of any length."""
+    a, b = triangles[:, 3:6].T, triangles[:, 6:9].T
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
+
+
+def triangle_rows(corners: Float32) -> Float32:
+    """Triangles as rows (n, 9) float32, a corner and two edges, from their corners (n, 3, 3)."""
+    first = corners[:, 0].astype(np.float64)
+    edges = [corners[:, i] - first for i in (1, 2)]
+    return np.concatenate([first, *edges], axis=1).astype(np.float32)
+
+
+def laid_out(scene: Scene, object_of: Int32, report: Report) -> tuple[Float32, Float32]:
+    """Triangles (t, 9), corner and edges, and attributes (t + q, COLUMNS) of all primitives, whose objects are
+    object_of (t + q,)."""
+    count = scene.triangle_count
+    triangles, rows = np.empty((count, 9), np.float32), aligned_rows(len(object_of), COLUMNS)
+    numbers = rows.view(np.int32)
+    for part, of, some in _parts(scene):
+        report(part.start / count)
+        triangles[part] = triangle_rows(of.corners[some])
+        rows[part, TEXTURE + 1 :] = 0
+        rows[part, CORNER_NORMALS:FACE_NORMAL] = of.normals[some].reshape(-1, 9)
+        rows[part, FACE_NORMAL:OBJECT] = edge_products(triangles[part])
+        numbers[part, OBJECT] = object_of[part]
+        numbers[part, MATERIAL] = of.material[some]
+        numbers[part, TEXTURE] = of.texture[some]
+    rows[count:] = 0
+    numbers[count:, OBJECT] = object_of[count:]
+    numbers[count:, MATERIAL] = np.concatenate([o.quadrics.material for o in scene.objects])
+    numbers[count:, TEXTURE] = -1
+    return triangles, rows
+
+
+def _parts(scene: Scene) -> Iterator[tuple[slice, Triangles, slice]]:
+    """Some triangles at a time: their numbers, and where they are among those of their object."""
+    for first, one in zip(scene.triangle_offsets.tolist(), scene.objects, strict=False):
+        for start in range(0, len(one.triangles), BLOCK):
+            stop = min(start + BLOCK, len(one.triangles))
+            yield slice(first + start, first + stop), one.triangles, slice(start, stop)
+
+
+def box_of(points: Float32, report: Callable[[], None]) -> Float64:
+    """The box (6,) around points (n, 3), inverted around none; `report` is called again and again."""
+    ends = [np.full(3, np.inf), np.full(3, -np.inf)]
+    for start in range(0, len(points), 3 * BLOCK):
+        report()
+        lower, upper = extent(points[start : start + 3 * BLOCK])
+        ends = [np.minimum(ends[0], lower), np.maximum(ends[1], upper)]
+    return np.concatenate(ends)
 
 
 @kernel
@@ -99,11 +162,11 @@ class Primitives:
         return np.concatenate([np.minimum(around[:3], lower), np.maximum(around[3:], upper)])
 
     def triangles_of(self, index: int) -> slice:
-        """The numbers of an object\'s triangles."""
+        """The numbers of an object's triangles."""
         return slice(int(self.triangle_starts[index]), int(self.triangle_starts[index + 1]))
 
     def quadrics_of(self, index: int) -> slice:
-        """The rows of an object\'s quadrics, counted from the first quadric on."""
+        """The rows of an object's quadrics, counted from the first quadric on."""
         return slice(int(self.quadric_starts[index]), int(self.quadric_starts[index + 1]))
 
     def pieces_of(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -162,62 +225,3 @@ class Primitives:
         lower, upper = quadric_boxes(self.quadrics[which, 12], radii, maps)
         slack = 2e-6 * np.maximum(np.abs(lower), np.abs(upper)).max(1, initial=0)[:, None]
         return np.concatenate([lower - slack, upper + slack], axis=1).astype(np.float32)
-
-
-# Columns: the normals of three corners; the triangle's own normal, of any length; and, as the bits of int32, the
-# numbers of its object, its material and its texture (-1 for none).
-CORNER_NORMALS, FACE_NORMAL, OBJECT, MATERIAL, TEXTURE = 0, 9, 12, 13, 14
-COLUMNS = 16
-
-
-def edge_products(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Cross products (t, 3) float32 of the two edges of triangles (t, 9), corner and edges: normals of any length."""
-    a, b = triangles[:, 3:6].T, triangles[:, 6:9].T
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
-
-
-def triangle_rows(corners: Float32) -> Float32:
-    """Triangles as rows (n, 9) float32, a corner and two edges, from their corners (n, 3, 3)."""
-    first = corners[:, 0].astype(np.float64)
-    edges = [corners[:, i] - first for i in (1, 2)]
-    return np.concatenate([first, *edges], axis=1).astype(np.float32)
-
-
-def laid_out(scene: Scene, object_of: Int32, report: Report) -> tuple[Float32, Float32]:
-    """Triangles (t, 9), corner and edges, and attributes (t + q, COLUMNS) of all primitives, whose objects are
-    object_of (t + q,)."""
-    count = scene.triangle_count
-    triangles, rows = np.empty((count, 9), np.float32), aligned_rows(len(object_of), COLUMNS)
-    numbers = rows.view(np.int32)
-    for part, of, some in _parts(scene):
-        report(part.start / count)
-        triangles[part] = triangle_rows(of.corners[some])
-        rows[part, TEXTURE + 1 :] = 0
-        rows[part, CORNER_NORMALS:FACE_NORMAL] = of.normals[some].reshape(-1, 9)
-        rows[part, FACE_NORMAL:OBJECT] = edge_products(triangles[part])
-        numbers[part, OBJECT] = object_of[part]
-        numbers[part, MATERIAL] = of.material[some]
-        numbers[part, TEXTURE] = of.texture[some]
-    rows[count:] = 0
-    numbers[count:, OBJECT] = object_of[count:]
-    numbers[count:, MATERIAL] = np.concatenate([o.quadrics.material for o in scene.objects])
-    numbers[count:, TEXTURE] = -1
-    return triangles, rows
-
-
-def _parts(scene: Scene) -> Iterator[tuple[slice, Triangles, slice]]:
-    """Some triangles at a time: their numbers, and where they are among those of their object."""
-    for first, one in zip(scene.triangle_offsets.tolist(), scene.objects, strict=False):
-        for start in range(0, len(one.triangles), BLOCK):
-            stop = min(start + BLOCK, len(one.triangles))
-            yield slice(first + start, first + stop), one.triangles, slice(start, stop)
-
-
-def box_of(points: Float32, report: Callable[[], None]) -> Float64:
-    """The box (6,) around points (n, 3), inverted around none; `report` is called again and again."""
-    ends = [np.full(3, np.inf), np.full(3, -np.inf)]
-    for start in range(0, len(points), 3 * BLOCK):
-        report()
-        lower, upper = extent(points[start : start + 3 * BLOCK])
-        ends = [np.minimum(ends[0], lower), np.maximum(ends[1], upper)]
-    return np.concatenate(ends)

@@ -11,6 +11,10 @@ from tracer.runtime.kernels import inlined
 
 MISS = -1
 INFINITY = np.float32(np.inf)
+RAY_OFFSET = 2e-5
+"""How far above a surface rays start, so that a rounded hit point does not hit its own surface again: of the largest
+coordinate at hand (the depth of the hit or a coordinate of the point, whichever is larger) about 300 roundings of a
+float32."""
 
 
 class Ray(NamedTuple):
@@ -117,8 +121,3 @@ def ray_at(rays, i):
     """The i-th of a batch given as pointers."""
     o, d, y, z = rays.origin, rays.direction, rays.size + i, 2 * rays.size + i
     return Ray(o[i], o[y], o[z], d[i], d[y], d[z], rays.t_min[i], rays.t_max[i])
-
-
-# Of the largest coordinate at hand (the depth of the hit or a coordinate of the point, whichever is larger):
-# about 300 roundings of a float32.
-RAY_OFFSET = 2e-5

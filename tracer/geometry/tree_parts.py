@@ -5,15 +5,11 @@ Reading builds nothing, and may happen while rays build: a part is there as a wh
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.runtime.parallel import for_each_chunk, thread_count
-
-CHUNK = 1 << 14  # points that a thread looks up at a time
 NOWHERE = -1  # the number of no part
 OUTSIDE = 0.005  # of all primitives: so many may lie beyond each side of what most are in
 
@@ -78,8 +74,3 @@ def nothing_at(n: int) -> PartsAt:
         np.zeros(n, np.float32),
         np.full(n, -1, np.int32),
     )
-
-
-def in_chunks(n: int, find: Callable[[slice], None]) -> None:
-    """Call find for all of n points, a part of them at a time, in all threads."""
-    for_each_chunk(lambda chunk, _: find(slice(chunk * CHUNK, (chunk + 1) * CHUNK)), -(-n // CHUNK), thread_count())

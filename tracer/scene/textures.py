@@ -32,6 +32,10 @@ KEPT_PIXELS = 1 << 24
 
 _TOO_LARGE = f"the image is too large; scale it down to {MOST_PIXELS >> 20} million pixels or fewer"
 
+_lock = Lock()
+_inside = 0  # threads that are within `only_known_images`
+_open = Image.open
+
 FOLDERS = ("texturefiles", "textures", "texture")
 
 
@@ -164,11 +168,6 @@ def texture_of(image: Image.Image, name: str) -> Texture:
 
 def _words(error: Exception) -> str:
     return " ".join(str(error).split())[:120] or type(error).__name__
-
-
-_lock = Lock()
-_inside = 0  # threads that are within `only_known_images`
-_open = Image.open
 
 
 @contextmanager

@@ -15,10 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import BVH8
+from tracer.geometry.building import NO_CONTROL, in_chunks
 from tracer.geometry.bvh8.layout import CHILDREN, COUNT, QUADRIC, SUBTREE
-from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
+from tracer.geometry.tree_parts import PartsAt, most_of, nothing_at
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import kernel
+from tracer.runtime.parallel import thread_count
 
 if TYPE_CHECKING:
     from tracer.geometry.bvh8.subtrees import LargeTree
@@ -91,8 +93,9 @@ class SubtreeParts:
         nodes, blocks = tree.tree
         codes, counts, found = nodes.view(np.int32), blocks.view(np.int32), nothing_at(len(points))
 
-        def find(part: slice) -> None:
+        def find(first: int, last: int) -> None:
+            part = slice(first, last)
             _locate(nodes, codes, counts, tree.table, across, points[part], *(column[part] for column in found))
 
-        in_chunks(len(points), find)
+        in_chunks(find, len(points), NO_CONTROL, thread_count())
         return found

@@ -29,10 +29,9 @@ from tracer.geometry.bvh8.build import count_blocks
 from tracer.geometry.bvh8.layout import BLOCK_SIZE, CHILDREN, NODE_SIZE, SUBTREE, Offsets, Tree, clear, write_topology
 from tracer.geometry.bvh8.refit import Links, fill_blocks, make_links, pad_blocks, pad_quadrics, unite_nodes
 from tracer.geometry.shared_memory import UNBUILT, publish_word
-from tracer.geometry.wide_tree.binary import NUMBER, UPPER, WEIGHT, grow, make_items
-from tracer.geometry.wide_tree.build import build_topology
+from tracer.geometry.wide_tree.binary import WEIGHT, grow, make_items, put_boxes
+from tracer.geometry.wide_tree.build import ALL, build_topology, collapsed
 from tracer.geometry.wide_tree.cells import Cells, cells_over
-from tracer.geometry.wide_tree.collapse import collapse, plan
 from tracer.geometry.wide_tree.topology import TOP_LEVEL_DEPTH, VACANT, WIDTH, Topology
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene import memory_check
@@ -41,7 +40,6 @@ from tracer.scene.model import Cancelled
 
 LARGE = 500_000  # triangles and quadrics: a tree over more is made of subtrees
 SUBTREE_SIZE = 1 << 13  # triangles of a subtree at most
-ALL = 1 << 62
 _CALLED = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 5)
 
 
@@ -63,27 +61,23 @@ def top_tree_over(rows: Float32, boxes: Float32, subtree: int, control: NDArray[
     # Grow a binary tree over the cells and the quadrics.
     count = len(cells.boxes) + len(boxes)
     around = np.concatenate([cells.boxes, boxes])
-    items, words = make_items(count), slice(NUMBER // 4, WEIGHT // 4 + 1)
-    items.items[0, :count, :3] = around[:, :3]
-    items.items[0, :count, UPPER // 4 : NUMBER // 4] = -around[:, 3:]
-    weights = np.concatenate([np.diff(cells.starts), np.full(len(boxes), WIDTH)])
-    items.items[0, :count].view(np.int32)[:, words] = np.stack([np.arange(count), weights], axis=1)
+    items = make_items(count)
+    put_boxes(items, around, 0)
+    items.items[0, : len(cells.boxes)].view(np.int32)[:, WEIGHT // 4] = np.diff(cells.starts)
     stack = np.zeros((TOP_LEVEL_DEPTH + 2, 5), np.int64)
     stack[0, 1] = count
     grow(items, stack, 1, ALL, TOP_LEVEL_DEPTH, subtree, control)
     if control[CANCELLED]:
         raise Cancelled
     # Give it eight children a node; its leaves are the subtrees.
-    children, leaves = np.empty((count, WIDTH), np.int32), np.empty((count, 2), np.int32)
-    plan(items.nodes, TOP_LEVEL_DEPTH)
-    nodes, subtrees = collapse(items.nodes, children, leaves, TOP_LEVEL_DEPTH)
-    first = leaves[:subtrees, 0]
+    children, leaves = collapsed(items, TOP_LEVEL_DEPTH)
+    first = leaves[:, 0]
     ends = np.append(np.sort(first), count)
     last = ends[np.searchsorted(ends, first) + 1]
     parts = [items.order[a:b] for a, b in zip(first.tolist(), last.tolist(), strict=True)]
     subtree_boxes = [np.concatenate([around[part, :3].min(0), around[part, 3:].max(0)]) for part in parts]
     return TopTree(
-        children[:nodes].copy(),
+        children,
         np.stack(subtree_boxes),
         [_items_of(cells, part, len(rows)) for part in parts],
     )

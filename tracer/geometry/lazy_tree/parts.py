@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.accelerators import LAZY
+from tracer.geometry.building import NO_CONTROL, in_chunks
 from tracer.geometry.kdtree.tree import LEAF
 from tracer.geometry.lazy_tree.node import FIRST, HEADER, PLANE, SECOND, SUBTREE
 from tracer.geometry.shared_memory import read_shared
-from tracer.geometry.tree_parts import PartsAt, in_chunks, most_of, nothing_at
+from tracer.geometry.tree_parts import PartsAt, most_of, nothing_at
 from tracer.runtime.kernels import kernel
+from tracer.runtime.parallel import thread_count
 from tracer.simd import i32_at, load_f32, load_i64
 
 if TYPE_CHECKING:
@@ -116,14 +118,15 @@ class LazyParts:
             return None
         trees, found = structure.trees, nothing_at(len(points))
 
-        def find(part: slice) -> None:
+        def find(first: int, last: int) -> None:
+            part = slice(first, last)
             rows = tuple(column[part] for column in found)
             _locate(trees[0].root, trees[0].box, _IDENTITY, np.float32(1), across, -1, points[part], *rows)
             for o in self._present.tolist():
                 to_object = self._to_object[o]
                 _locate(trees[o].root, trees[o].box, to_object, _scale(to_object), 3, o, points[part], *rows)
 
-        in_chunks(len(points), find)
+        in_chunks(find, len(points), NO_CONTROL, thread_count())
         return found
 
 

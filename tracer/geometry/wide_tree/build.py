@@ -70,7 +70,13 @@ def build_topology(
     in_chunks(lambda first, last: put_triangles(items, rows, first, last), triangles, control, threads)
     put_boxes(items, boxes, triangles)
     _grow(items, count, depth, control, threads)
+    return Topology(*collapsed(items, depth), items.order)
+
+
+def collapsed(items: Items, depth: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Children and leaves, as in a `Topology`, of a binary tree that has been grown at most so deep."""
+    count = len(items.order)
     children, leaves = np.empty((count, WIDTH), np.int32), np.empty((count, 2), np.int32)
     plan(items.nodes, depth)
     used_nodes, used_leaves = collapse(items.nodes, children, leaves, depth)
-    return Topology(children[:used_nodes].copy(), leaves[:used_leaves].copy(), items.order)
+    return children[:used_nodes].copy(), leaves[:used_leaves].copy()
