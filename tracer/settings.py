@@ -10,6 +10,7 @@ from typing import Any
 from tracer.geometry.accelerators import BVH8, KD_TREE, LAZY
 from tracer.method import DEFAULT_METHOD, Method, title_of
 from tracer.scene.lights import MAX_SAMPLES
+from tracer.scene.limits import LARGEST
 from tracer.util.setting import NEVER, PICTURES, check_all, documented, setting
 
 MAX_SIDE = 16384
@@ -79,7 +80,7 @@ class Settings:
     lamp_radius: float | None = setting(
         None, "Lamp radius",
         "Make every point light and sphere a lamp of this radius, in the scene's units, with soft shadows; 0: points.",
-        low=0.0, unset="scene", option="--lamp-radius", panel="Lamps", remembered=False,
+        low=0.0, high=LARGEST, unset="scene", option="--lamp-radius", panel="Lamps", remembered=False,
     )  # fmt: skip
     lamp_samples: int | None = setting(
         None, "Lamp samples",

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -52,3 +56,11 @@ def test_a_disk_that_takes_nothing_is_one_line(attack):
             except faults.NotAllowed:
                 pytest.skip("only root may mount a file system, and not everywhere")
             assert not line.failed, f"{line.what}: {line.first}"
+
+
+@pytest.mark.parametrize("option", ["--version", "--help"])
+def test_a_full_disk_is_said_of_help_too(option: str) -> None:
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "viewer", option]
+        done = subprocess.run(command, cwd=Path(__file__).parents[2], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "No space left" in done.stderr

@@ -42,10 +42,10 @@ class Camera:
         """The inverse of `to_json`; raises ValueError, in one line, on anything else."""
         try:
             position, direction, up = (
-                tuple(float(x) for x in data.get(key, default))
+                tuple(map(_number, data.get(key, default)))
                 for key, default in (("position", ()), ("direction", ()), ("up", (0, 1, 0)))
             )
-            angle = float(data.get("angle", 45.0))
+            angle = _number(data.get("angle", 45.0))
         except (TypeError, ValueError, AttributeError, OverflowError):
             raise ValueError("a camera needs lists of numbers: position, direction, up; and an angle") from None
         vectors = (position, direction, up)
@@ -56,6 +56,13 @@ class Camera:
         if not 0.0 < angle < 180.0 or not any(direction):
             raise ValueError("a camera's angle lies between 0 and 180 degrees, and its direction is not zero")
         return Camera(position, direction, up, angle)  # type: ignore[arg-type]
+
+
+def _number(value: object) -> float:
+    """A number of JSON; raises TypeError for what only looks like one: true, "3"."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError(value)
+    return float(value)
 
 
 def _moderate(vector: tuple[float, float, float]) -> Float64:

@@ -6,7 +6,6 @@ A function that reads a value raises ValueError in one line.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import re
 import sys
@@ -24,6 +23,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.limits import LARGEST
 from tracer.util.setting import Setting
 from tracer.util.suggest import similar
+from viewer.state.codec import from_text
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import Record, View
 from viewer.util.messages import ERROR, say
@@ -55,6 +55,10 @@ class Parser(argparse.ArgumentParser):
             return action.type(text) if callable(action.type) else text
         except ValueError as error:
             raise argparse.ArgumentError(action, str(error)) from None
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help or a version; argparse would say nothing of a disk that is full."""
+        print(message, end="", file=file or sys.stderr, flush=True)
 
     def error(self, message: str) -> NoReturn:
         """Ask about the first unknown word that is like an option; its dashes, which all have, do not count."""
@@ -134,10 +138,10 @@ def _json(text: str, start: str, most: int) -> Any:
     try:
         if not text.lstrip().startswith(start):
             text = read_regular(Path(text), most).decode("utf-8")
-        return json.loads(text)
+        return from_text(text)
     except OSError as error:
         raise ValueError(f"neither JSON nor a file that can be read: {name}: {error.strerror or error}") from None
-    except (ValueError, RecursionError):
+    except ValueError:
         raise ValueError(f"{name} is not JSON") from None
 
 

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from tracer.editing.edits import Edits, edited
 from tracer.geometry.world import World
@@ -23,6 +22,7 @@ from tracer.scene.files import read_regular
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Scene, SceneError
+from tracer.scene.textures import open_image
 from tracer.settings import Settings
 from tracer.util.text import printable
 from tracer.util.version import program_version
@@ -109,7 +109,7 @@ def read(path: Path) -> tuple[Carried, NDArray[Any]]:
 
 
 def _pixels(file: bytes) -> NDArray[np.uint8]:
-    with Image.open(BytesIO(file), formats=("PNG",)) as image:
+    with open_image(BytesIO(file), ("PNG",)) as image:
         return np.asarray(image.convert("RGB"))
 
 

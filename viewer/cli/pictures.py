@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
@@ -144,12 +143,12 @@ def state_of(path: Path) -> ViewState:
         state = capture.read(path)
     else:
         try:
-            data = json.loads(read_regular(path, _LARGEST_STATE))
+            data = codec.from_text(read_regular(path, _LARGEST_STATE))
             of_picture = isinstance(data, dict) and "state" in data
             state = capture.carried_from_json(data).view_state() if of_picture else codec.state_from_file(data)
         except FileNotFoundError:
             raise capture.CaptureError(f"{path}: no such file") from None
-        except (OSError, ValueError, RecursionError) as error:
+        except (OSError, ValueError) as error:
             raise capture.CaptureError(f"{path}: holds no state of the viewer: {error}") from None
     scene = find_scene(state.scene, path)
     if scene is None:

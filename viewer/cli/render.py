@@ -6,7 +6,6 @@ can be written.
 
 from __future__ import annotations
 
-import shlex
 from argparse import Namespace
 from dataclasses import replace
 from itertools import groupby
@@ -20,7 +19,7 @@ from tracer.frame import Frame, Settings
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.load import check_scene_file
-from tracer.util.text import printable
+from tracer.util.text import printable, shell_line
 from viewer.cli import options, pictures
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import print_table, titled, working
@@ -101,7 +100,7 @@ def run(given: Namespace) -> int:
         wanted = stills.with_caption_filled(pictures.wanted_state(scene, settings, given, everything), scene)
         if given.print_command:
             words = commands.words(wanted, scene, str(given.output or f"{given.path.stem}.png"), given.folder)
-            print(shlex.join(["shadowcull", *words]))
+            print(shell_line(["shadowcull", *words]))
             return 0
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, replace(settings, verify=False), work.progress)

@@ -6,7 +6,6 @@ it brings all that back.  Files are whole or absent, and every failure is one li
 
 from __future__ import annotations
 
-import json
 import string
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -107,8 +106,8 @@ def carried_from_json(data: Any) -> Carried:
 def carried_from_text(path: Path, text: str) -> Carried:
     """Return what a file carries; raises CaptureError."""
     try:
-        return carried_from_json(json.loads(text))
-    except (ValueError, RecursionError) as error:
+        return carried_from_json(codec.from_text(text))
+    except ValueError as error:
         raise CaptureError(f"{path}: cannot be restored: {error}") from None
 
 

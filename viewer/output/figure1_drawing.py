@@ -15,13 +15,13 @@ from xml.sax.saxutils import escape
 
 from tracer.frame import Frame
 from tracer.scene.model import Scene
+from tracer.util.text import wrapped
 from viewer.output.figure1 import Figure, Stage, figure_of
 from viewer.output.overlays import font
 from viewer.state.palette import Color
 from viewer.state.session import Session
 from viewer.state.views import View
 from viewer.util.files import write_text
-from viewer.views.legend import wrapped
 
 # --- what a drawing consists of ------------------------------------------------------------------
 

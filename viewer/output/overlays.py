@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tracer.frame import Frame
+from tracer.util.text import wrapped
 from viewer.state.palette import DARK, FATES, LIGHT, Color, hex_color, label_color
 from viewer.state.savings import WOULD_OPACITY, bar_of, counters, in_words, placed
-from viewer.views.legend import BACKDROP_OPACITY, Legend, fitting, wrapped
+from viewer.views.legend import BACKDROP_OPACITY, Legend, fitting
 
 # The least size of letters in pixels, and how many lines of them the picture's shorter side holds.
 OF_LEGEND, OF_STRIP = (11, 42), (12, 36)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.model import Scene
+from tracer.util.text import shell_line
 from viewer.output import capture, commands, exr, other_programs
 from viewer.output.commands import BUILT, cannot_come_back, needs_history
 from viewer.services import stills
@@ -115,15 +115,11 @@ class Pictures:
             self._notices.say("there is no picture yet", error=True)
             return None
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
-        words = shlex.join(["shadowcull", *commands.words(state, self._session.scene, name, self._loader.folders)])
-        try:
-            words.encode()
-        except UnicodeEncodeError:
-            self._notices.say("not copied: the name of the scene's file is not valid text", error=True)
-            return None
+        words = commands.words(state, self._session.scene, name, self._loader.folders)
+        line = shell_line(["shadowcull", *words])
         why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != BUILT else ""
-        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {words}")
-        return words
+        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {line}")
+        return line
 
     # --- as a file of its own -----------------------------------------------------------------------
 

@@ -51,8 +51,11 @@ def text(value: Any, indent: int | None = None) -> str:
 
 
 def from_text(text: str | bytes) -> Any:
-    """Return what the text of JSON says; raises ValueError, in one line, and RecursionError."""
-    return json.loads(text)
+    """Return what the text of JSON says; raises ValueError, in one line."""
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise ValueError("its JSON is nested too deeply") from None
 
 
 def forgiven(data: Any, kind: Any, default: Any) -> Any:

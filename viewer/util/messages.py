@@ -10,10 +10,13 @@ from tracer.scene.model import SceneError
 from tracer.util.text import printable
 
 ERROR = "error: "
+LONGEST = 2000
+"""Characters of a line; of a longer one the middle is left out."""
 
 
 def in_one_line(text: object) -> str:
-    return printable(" ".join(str(text).split()))
+    line = printable(" ".join(str(text).split()))
+    return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
 
 
 def say(message: object, kind: str = "") -> None:

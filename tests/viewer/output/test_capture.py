@@ -23,7 +23,6 @@ VALUES = {"scene": "kitchen", "view": "shadow", "frame": 7, "seconds": 1.25, "me
           "width": 640, "height": 480}  # fmt: skip
 PIXELS = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
 
-
 CAMERA = Camera((1.0, 2.0, 3.0), (0.0, 0.0, -1.0))
 STATE = ViewState(
     "/scenes/kitchen.aff", time=1.25, camera=CAMERA, settings=Settings(6, 4, method="none"),
@@ -87,13 +86,13 @@ def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path: Path):
 
 
 def test_a_state_that_is_none_is_refused_in_one_line(tmp_path: Path):
-    """What is no picture, and what is none of ours, the command line promises."""
-    info = PngImagePlugin.PngInfo()
-    info.add_itxt("shadowcull", '{"state": [1, 2]}')
-    Image.fromarray(PIXELS).save(tmp_path / "wrong.png", pnginfo=info)
-    with pytest.raises(capture.CaptureError, match=r"wrong\.png.*cannot be restored") as caught:
-        capture.read(tmp_path / "wrong.png")
-    assert "\n" not in str(caught.value)
+    for carried, why in (('{"state": [1, 2]}', "no saved state in it"), ('{"a": ' * 10**5, "nested too deeply")):
+        info = PngImagePlugin.PngInfo()
+        info.add_itxt("shadowcull", carried)
+        Image.fromarray(PIXELS).save(tmp_path / "wrong.png", pnginfo=info)
+        with pytest.raises(capture.CaptureError, match=rf"wrong\.png.*cannot be restored: .*{why}") as caught:
+            capture.read(tmp_path / "wrong.png")
+        assert "\n" not in str(caught.value)
 
 
 def test_a_program_named_like_a_picture_is_not_run(tmp_path, monkeypatch):
