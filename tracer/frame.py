@@ -84,9 +84,10 @@ class Frame:
     layers : dict of str to array
         Whatever else the method shows at each pixel, by name.
     structures : dict of str to object
-        What else the method shows, by name, as this frame found it: "voxels" (`tracer.culling.voxels.tell.VoxelStates`)
-        and "light cubes", of each of the first lights (`tracer.culling.lightbuffer.tell.LightCube`); and "tree", an
-        acceleration structure that is built where rays arrive (`tracer.geometry.tree_parts.TreeParts`).
+        What else the method shows, by name, as this frame found it: "voxels"
+        (`tracer.neighbours.voxels.tell.VoxelStates`) and "light cubes", of each of the first lights
+        (`tracer.neighbours.lightbuffer.tell.LightCube`); and "tree", an acceleration structure that is built where rays
+        arrive (`tracer.geometry.tree_parts.TreeParts`).
     statistics : FrameStatistics
         What the frame cost.
     """

@@ -15,12 +15,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import FULLY_RENDERED, occlusion_mode, word_type
 from tracer.frame import Frame
 from tracer.frame_in_progress import Cancel, FrameInProgress
 from tracer.geometry.world import World
 from tracer.methods.interface import ShadowMethod
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.progressive import LEVELS, after
 from tracer.scene.model import Camera, Progress, Scene
 from tracer.settings import Settings

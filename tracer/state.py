@@ -9,13 +9,13 @@ from copy import copy
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.cost_model import CostModel, cost_model_for
 from tracer.culling.mode_history import ModeHistory
 from tracer.culling.rest import Rest
 from tracer.geometry.world import World
 from tracer.method import Kind, Method
 from tracer.methods.interface import Services, ShadowMethod
 from tracer.methods.paper import ModesBeside
+from tracer.neighbours.certified.cost_model import CostModel, cost_model_for
 from tracer.scene.lights import LampTable, Light, as_lamps
 from tracer.scene.model import Progress, Scene
 from tracer.settings import Settings

@@ -13,7 +13,7 @@ from tracer.culling.mode_changes import ModeChanges
 from tracer.geometry.structure import BuiltPart
 
 if TYPE_CHECKING:
-    from tracer.culling.certified.scheduler import Counts
+    from tracer.visibility.budget import Counts
 
 
 @dataclass

@@ -71,11 +71,10 @@ EDITS = (
     *(  # the deepest first: they end like the others
         Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", times)
         for file, indent, what, by, times in (
-            ("packet_tree", 12, "TESTS", "1", 1),
+            ("packet_tree", 12, "TESTS", "1", 2),
             ("packet_tree", 8, "TESTS", "1", 1),
             ("packet_tree", 8, "STEPS", "1", 1),
             ("packet_tree", 4, "TESTS", "1", 1),
-            ("roots", 12, "TESTS", "1", 1),
             ("single_ray", 12, "TESTS", "1", 2),
             ("single_ray", 8, "STEPS", "1", 1),
             ("single_ray", 8, "STEPS", "rays", 1),
@@ -87,29 +86,27 @@ EDITS = (
         )
     ),
     *(  # likewise
-        Edit(f"tracer/culling/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", 1)
+        Edit(f"tracer/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", 1)
         for file, indent, what, by in (
-            ("certified/lookup", 8, "TESTS", "tests"),
-            ("occluder_cache", 8, "TESTS", "ones(tested)"),
-            ("certified/tree_walk", 12, "STEPS", "1"),
-            ("certified/tree_walk", 8, "STEPS", "1"),
-            ("certified/certify", 4, "TESTS", "n"),
-            ("certified/asking_lamps", 4, "TESTS", "ones(open_)"),
-            ("certified/asking_lamps", 8, "TESTS", "ones(lanes_below(found, batch))"),
-            ("certified/hiders", 8, "TESTS", "1"),
-            ("lightbuffer/candidates", 12, "TESTS", "ones(there) if single else 1"),
-            ("lightbuffer/lookup", 16, "STEPS", "_lookups(n, single)"),
-            ("lightbuffer/lookup", 8, "STEPS", "_lookups(n, single)"),
-            ("lightbuffer/lookup", 4, "STEPS", "_lookups(n, single)"),
-            ("voxels/classify", 4, "TESTS", "room.state[0]"),
-            ("voxels/classify", 4, "TESTS", "n"),
-            ("voxels/walk", 8, "TESTS", "ones(left) if by_ray else 1"),
-            ("voxels/walk", 8, "TESTS", "ones(here) if by_ray else 1"),
-            ("voxels/walk", 8, "STEPS", "ones(open_) if voxels.by_ray else 1"),
-            ("environments/ask", 8, "STEPS", "ones(live) if by_ray else 1"),
-            ("regions/certify", 16, "STEPS", "1"),
-            ("regions/certify", 16, "TESTS", "1"),
-            ("regions/certify", 8, "TESTS", "1"),
+            ("neighbours/certified/lookup", 8, "TESTS", "tests"),
+            ("culling/occluder_cache", 8, "TESTS", "ones(tested)"),
+            ("visibility/tree_walk", 12, "STEPS", "1"),
+            ("visibility/tree_walk", 8, "STEPS", "1"),
+            ("visibility/search", 4, "TESTS", "n"),
+            ("neighbours/area_lights/area_light_query", 4, "TESTS", "ones(open_)"),
+            ("neighbours/area_lights/area_light_query", 8, "TESTS", "ones(lanes_below(found, batch))"),
+            ("neighbours/area_lights/recent_occluders", 8, "TESTS", "1"),
+            ("neighbours/lightbuffer/candidates", 12, "TESTS", "ones(there) if single else 1"),
+            ("neighbours/lightbuffer/lookup", 16, "STEPS", "_lookups(n, single)"),
+            ("neighbours/lightbuffer/lookup", 8, "STEPS", "_lookups(n, single)"),
+            ("neighbours/lightbuffer/lookup", 4, "STEPS", "_lookups(n, single)"),
+            ("visibility/box_candidates", 8, "TESTS", "room.state[0]"),
+            ("visibility/ask_list", 8, "TESTS", "ones(left) if by_ray else 1"),
+            ("visibility/ask_list", 8, "TESTS", "ones(here) if by_ray else 1"),
+            ("neighbours/voxels/walk", 8, "STEPS", "ones(open_) if voxels.by_ray else 1"),
+            ("neighbours/environments/ask", 8, "STEPS", "ones(live) if by_ray else 1"),
+            ("visibility/hidden_lights", 16, "STEPS", "1"),
+            ("visibility/hidden_lights", 4, "TESTS", "ones(tried)"),
         )
     ),
 )

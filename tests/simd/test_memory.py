@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -188,3 +190,46 @@ def test_local_memory_is_aligned_and_each_ones_own():
     out = np.zeros((4, 14), np.int64)
     fill(3, out)
     assert out.tolist() == [[*range(100 * d, 100 * d + 12), 0, 0] for d in range(4)]
+
+
+# --- memory that ends with the function that has it -----------------------------------------------------
+
+
+def _returned_memory(function: ast.FunctionDef) -> set[str]:
+    """What a function returns that is, or holds, an address of its own `local_memory`."""
+
+    def is_memory(node: ast.AST, names: set[str]) -> bool:
+        """Whether a value is such an address, plainly or in a tuple or record; a call that is given one may use it."""
+        if isinstance(node, ast.Call):
+            called = getattr(node.func, "id", "")
+            if called == "local_memory":
+                return True
+            records = (
+                called.endswith("_at") or called[:1].isupper() or (called.startswith("_") and called[1:2].isupper())
+            )
+            values = [*node.args, *(keyword.value for keyword in node.keywords)]
+            return records and any(is_memory(value, names) for value in values)
+        if isinstance(node, ast.Tuple):
+            return any(is_memory(element, names) for element in node.elts)
+        return isinstance(node, ast.Name) and node.id in names
+
+    names: set[str] = set()
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assign):
+            for target in node.targets:
+                pairs = [(target, node.value)]
+                if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
+                    pairs = list(zip(target.elts, node.value.elts, strict=False))
+                names |= {to.id for to, value in pairs if isinstance(to, ast.Name) and is_memory(value, names)}
+    returns = [node for node in ast.walk(function) if isinstance(node, ast.Return) and node.value is not None]
+    return {ast.unparse(node) for node in returns if is_memory(node.value, names)}
+
+
+def test_no_function_returns_an_address_of_its_own_memory() -> None:
+    """LLVM may end the life of that memory where the function returns, inlined or not."""
+    caught = ast.parse("def make():\n    room = Room(local_memory(64))\n    return room\n").body[0]
+    assert isinstance(caught, ast.FunctionDef) and _returned_memory(caught)
+    for path in (Path(__file__).resolve().parents[2] / "tracer").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                assert not _returned_memory(node), f"{path}: {node.name}"

@@ -12,14 +12,14 @@ import numpy as np
 import tracer
 from tests.sweeps import ACCELERATORS
 from tests.tracing.brute import meet_all
-from tracer.culling.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
-from tracer.culling.certified.error_bounds import EPSILON
-from tracer.culling.certified.light_space import verdicts
-from tracer.culling.certified.shaft import LOWEST
-from tracer.culling.certified.store import CertificateStore
 from tracer.geometry.rays import RAY_OFFSET, ray_batch
+from tracer.neighbours.certified.cell_prism import LOWEST
+from tracer.neighbours.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
+from tracer.neighbours.certified.store import CertificateStore
 from tracer.runtime.kernels import kernel
-from tracer.simd import address_of, load_three
+from tracer.simd import address_of, load_columns, load_three
+from tracer.visibility.error_bounds import EPSILON
+from tracer.visibility.light_space import LIGHT_ROW, verdicts
 
 LAMP = 1e-5  # of the way from the light: where shadow rays begin
 NAMES = {FULL: "FULL", LIT: "LIT", CANDIDATES: "CANDIDATES"}
@@ -226,6 +226,8 @@ def _verdicts(light_space, names, light, ends, hits, misses):
             numbers[:] = names[j]
             end = load_three(padded, 0)
             direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
-            hit, missed = verdicts(address_of(light_space), address_of(numbers), light, direction, end)
+            hit, missed = verdicts(
+                load_columns(address_of(light_space), address_of(numbers), LIGHT_ROW), light, direction, end
+            )
             for k in range(count):
                 hits[j, first + k], misses[j, first + k] = (hit >> k) & 1, (missed >> k) & 1

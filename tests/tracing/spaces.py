@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.environments.store import EnvironmentStore
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.culling.voxels.store import VoxelStore
 from tracer.geometry.world import World
+from tracer.neighbours.environments.store import EnvironmentStore
+from tracer.neighbours.voxels.store import VoxelStore
 from tracer.scene.lights import Lamps, LampTable, Light
 
 

@@ -13,11 +13,11 @@ import tracer
 from tests.sweeps import ACCELERATORS
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.worlds import certificates_of
-from tracer.culling.certified.cost_model import CostModel
 from tracer.method import Kind, register, unregister
 from tracer.methods.adaptive_policy import AdaptivePolicy, Plan, Trial
 from tracer.methods.auto import Auto
 from tracer.methods.interface import Services
+from tracer.neighbours.certified.cost_model import CostModel
 
 TILES = 64
 LEARNT = 3.0  # frames' time of certifying after which all is known

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 
@@ -332,23 +330,3 @@ def test_no_rays_have_no_answers():
     world = of_8(scene(random_corners(np.random.default_rng(0), 20, 0.3)))
     none = tracer.RayBatch(np.empty((0, 3)), np.empty((0, 3)))
     assert len(world.closest_hits(none).t) == len(world.any_hits(none)) == 0
-
-
-def test_rays_without_a_direction_in_common_need_little_of_a_threads_stack():
-    """Threads of some systems have half a megabyte: a stream of rays takes its memory from the heap."""
-    code = (
-        "import threading, numpy as np, tracer\n"
-        "from tests.tracing.rays_and_movers import random_rays\n"
-        "from tests.tracing.worlds import random_corners, scene\n"
-        "rng = np.random.default_rng(1)\n"
-        "world = tracer.World(scene(random_corners(rng, 200, 0.3)), 0.0)\n"
-        "rays = random_rays(rng, 500)\n"
-        "def ask(): print((world.closest_hits(rays, 1).primitive >= 0).sum())\n"
-        "ask()\n"
-        "threading.stack_size(256 * 1024)\n"
-        "thread = threading.Thread(target=ask)\n"
-        "thread.start(), thread.join()\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    first, again = done.stdout.split()
-    assert first == again and int(first) > 50

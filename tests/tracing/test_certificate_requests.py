@@ -8,12 +8,12 @@ import pytest
 import tracer
 from tests.tracing.shades import BEHIND, floor, roof
 from tests.tracing.worlds import certificates_of, scene
-from tracer.culling.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
-from tracer.culling.certified.cost_model import CostModel
-from tracer.culling.certified.gather_requests import RequestPoints, gather_tasks
-from tracer.culling.certified.store import CertificateStore
-from tracer.culling.certified.tasks import KEPT, commit, make_tasks, tasks_in
 from tracer.culling.modes import FULLY_RENDERED
+from tracer.neighbours.certified.cells import ALONG_U, CANDIDATES, CORNER, FULL, LIT, NORMAL, ROOTS, TOO_MANY
+from tracer.neighbours.certified.cost_model import CostModel
+from tracer.neighbours.certified.gather_requests import RequestPoints, gather_tasks
+from tracer.neighbours.certified.store import CertificateStore
+from tracer.neighbours.certified.tasks import KEPT, commit, make_tasks, tasks_in
 
 # The last light is below the floor: no cell there waits for it.
 LIGHTS = [(0.0, 0.0, 11.0), (1.0, -1.0, 10.0), (0.0, 0.0, -4.0)]

@@ -10,13 +10,14 @@ import pytest
 import tracer
 from tests.tracing.shades import floor, roof
 from tests.tracing.worlds import scene
-from tracer.culling.certified.cells import NOBODY, ROOTS
-from tracer.culling.certified.cost_model import CostModel
-from tracer.culling.certified.requests import Requests
-from tracer.culling.certified.scheduler import LEAST, MANY, Budget, CertificateScheduler
-from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import nothing_rests
+from tracer.neighbours.certified.cells import NOBODY, ROOTS
+from tracer.neighbours.certified.cost_model import CostModel
+from tracer.neighbours.certified.requests import Requests
+from tracer.neighbours.certified.scheduler import LEAST, MANY, CertificateScheduler
+from tracer.neighbours.certified.store import CertificateStore
 from tracer.scene.lights import LampTable
+from tracer.visibility.budget import Budget
 
 LIGHTS = np.array([(0.0, 0.0, 11.0), (1.0, -1.0, 10.0)], np.float32)
 SQUARES = scene(floor() + roof(6.0, 1.0), lights=LIGHTS)

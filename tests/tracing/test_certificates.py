@@ -16,13 +16,13 @@ from tests.sweeps import ACCELERATORS
 from tests.tracing.brute import meet_all
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import GREY, certificates_of, quad, scene
-from tracer.culling.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by
-from tracer.culling.certified.cost_model import CostModel
-from tracer.culling.certified.invalidate import copy_kept
-from tracer.culling.certified.store import CertificateStore
 from tracer.culling.rest import changes
 from tracer.geometry.rays import ray_batch
 from tracer.inspect.ray_tree import ray_tree
+from tracer.neighbours.certified.cells import CANDIDATES, FINAL, FULL, LIT, NOBODY, SETTLED, make_cells, named_by
+from tracer.neighbours.certified.cost_model import CostModel
+from tracer.neighbours.certified.invalidate import copy_kept
+from tracer.neighbours.certified.store import CertificateStore
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled
 

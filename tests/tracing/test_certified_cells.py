@@ -18,8 +18,8 @@ from tests.tracing.certified_twin import NAMES, Twin
 from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import certificates_of, quad, scene
-from tracer.culling.certified.cells import CANDIDATES, FULL, LIT
-from tracer.culling.certified.cost_model import CostModel
+from tracer.neighbours.certified.cells import CANDIDATES, FULL, LIT
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.scene.model import Camera
 
 STATES = (FULL, LIT, CANDIDATES)

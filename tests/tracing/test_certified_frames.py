@@ -16,7 +16,7 @@ from tests.sweeps import ACCELERATORS, cases, crossed
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, with_lamps
 from tests.tracing.same import contents
 from tests.tracing.worlds import certificates_of
-from tracer.culling.certified.cost_model import CostModel
+from tracer.neighbours.certified.cost_model import CostModel
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
 # Small pictures are to have many certificates on either structure, and to test candidates.

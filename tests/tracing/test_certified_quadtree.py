@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.certified.quadtree import descend, part_of, place_of_part
+from tracer.neighbours.certified.quadtree import descend, part_of, place_of_part
 from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_f32x16, load_i32x16, store
 

@@ -13,12 +13,12 @@ from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, static_part, with_lamps
 from tests.tracing.spaces import environment_store, point_lamps
 from tests.tracing.worlds import scene, wall
-from tracer.culling.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
-from tracer.culling.environments.store import CANDIDATES
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
+from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
+from tracer.neighbours.environments.store import CANDIDATES
 from tracer.scene.lights import Light
 from tracer.scene.load import load_scene
 from tracer.settings import Settings

@@ -1,4 +1,4 @@
-"""Hiders: of lamps by the hundred, samples that a triangle hid from neighbours are hidden for certain."""
+"""Recent occluders: of lamps by the hundred, samples that a triangle hid from neighbours are hidden for certain."""
 
 from __future__ import annotations
 

@@ -16,8 +16,8 @@ from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.naive_frame import NaiveRenderer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, occlusion_mode
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.scene.model import Camera
 
 # Methods, and the paper's whose modes they keep beside them: that which counts what rests as static where they do.

@@ -164,7 +164,7 @@ def test_lamps_and_many_lights_are_told_sample_by_sample(scene_file: Path, tmp_p
     counts = _sums_agree(renderer, frame, 59)
     assert counts[Verdict.PASSED_OVER] > 0
     renderer, frame = rendered(many, "certified", "bvh8", lamp_radius=0.2, lamp_samples=9)
-    assert _sums_agree(renderer, frame, 59 * 9)[Verdict.BEAM] > 0, "samples that hiders hide"
+    assert _sums_agree(renderer, frame, 59 * 9)[Verdict.BEAM] > 0, "samples that recent occluders hide"
 
 
 def _sums_agree(renderer: Renderer, frame: Frame, samples: int) -> Counter[Verdict]:

@@ -11,13 +11,7 @@ from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.nasty_worlds import nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tests.tracing.worlds import quad, scene, wall
-from tracer.culling.certified.scheduler import Budget
 from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.culling.regions.blockers import find_blockers
-from tracer.culling.regions.certify import hidden_from
-from tracer.culling.regions.grid import boxes_of, make_grid, region_at
-from tracer.culling.regions.light_tree import LEAVES, build_light_tree
-from tracer.culling.regions.store import RegionStore
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
 from tracer.geometry.primitives import triangle_rows
@@ -25,11 +19,18 @@ from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.inspect.ray_tree import ray_tree
 from tracer.methods.certified_lights import CertifiedLights
+from tracer.neighbours.regions.grid import make_grid, region_boxes
+from tracer.neighbours.regions.store import RegionStore
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
 from tracer.scene.lights import LampTable, Light
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
+from tracer.visibility.blockers import find_blockers
+from tracer.visibility.budget import Budget
+from tracer.visibility.grid import cube_at
+from tracer.visibility.hidden_lights import first_blocker
+from tracer.visibility.light_tree import LEAVES, build_light_tree
 
 SETTINGS = Settings(width=64, height=48, depth=2, method="certified", threads=2)
 
@@ -58,36 +59,26 @@ def test_every_light_is_in_one_leaf_and_below_boxes_that_hold_it(count: int):
 # --- blockers -------------------------------------------------------------------------------------
 
 
-def test_blockers_are_the_largest_triangles_with_their_sides_around_them():
+def test_blockers_are_the_largest_triangles_that_have_any_area():
     rng = np.random.default_rng(7)
     corners = rng.normal(size=(40, 3, 3)) * 10.0 ** rng.uniform(-2, 1, (40, 1, 1))
     corners[3] = corners[3, :1]  # of no area
     rows = rows_of(corners.tolist())
-    blockers = find_blockers(rows)
+    blockers = find_blockers(rows, 1.0)
     assert sorted(blockers.numbers.tolist()) == [i for i in range(40) if i != 3]
-    for frame, box, sides, number in zip(
-        blockers.frames, blockers.boxes, blockers.sides, blockers.numbers, strict=True
-    ):
-        row = rows[number].astype(np.float64)
-        points = np.stack([row[:3], row[:3] + row[3:6], row[:3] + row[6:], row[:3] + (row[3:6] + row[6:]) / 3])
-        local = points @ frame[:, :3].T + frame[:, 3]
-        size = np.ptp(points, axis=0).max()
-        assert np.abs(local[:, 2]).max() < 1e-9 * (size + np.abs(points).max())
-        assert (local[:3, :2].min(0) == pytest.approx(box[:2])) and (local[:3, :2].max(0) == pytest.approx(box[2:]))
-        away = local[:, :2] @ sides[:, :2].T + sides[:, 2]
-        assert (away[3] > 0.0).all(), "its middle is inside of all sides"
-        assert (np.sort(np.abs(away[:3]), axis=1)[:, :2] < 1e-9 * size).all(), "two sides meet at each corner"
+    columns = blockers.groups.transpose(0, 2, 1).reshape(-1, 9)
+    assert (columns[:39] == rows[blockers.numbers]).all() and not columns[39:].any()
 
 
 def test_only_the_largest_are_taken(monkeypatch):
-    monkeypatch.setattr("tracer.culling.regions.blockers.MOST", 2)
+    monkeypatch.setattr("tracer.visibility.blockers.MOST", 2)
     small, large = quad((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)), quad((0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1))
-    assert sorted(find_blockers(rows_of(small + large)).numbers.tolist()) == [2, 3]
+    assert sorted(find_blockers(rows_of(small + large), 1.0).numbers.tolist()) == [2, 3]
 
 
 def test_nothing_has_no_blockers():
-    assert len(find_blockers(np.empty((0, 9), np.float32)).numbers) == 0
-    assert len(find_blockers(rows_of([[(0, 0, 0), (1, 0, 0), (2, 0, 0)]])).numbers) == 0
+    assert len(find_blockers(np.empty((0, 9), np.float32), 1.0).numbers) == 0
+    assert len(find_blockers(rows_of([[(0, 0, 0), (1, 0, 0), (2, 0, 0)]]), 1.0).numbers) == 0
 
 
 # --- the proof ------------------------------------------------------------------------------------
@@ -125,7 +116,7 @@ def test_no_ray_gets_past_a_blocker_that_hides_a_light(accelerator: str):
                 np.concatenate([place @ c + move - h, place @ c + move + h]).astype(np.float32).astype(np.float64)
                 for c, h in zip(centers, half, strict=True)
             )
-            if hidden_from(store.blockers, store.longest_sure, region[None], light[None]) < 0:
+            if first_blocker(store.hidden.blockers, region[None], light[None]) < 0:
                 continue
             origins, ends = _rays(rng, light, region)
             blocked = world.any_hits(ray_batch(origins, ends - origins, LIGHT_MARGIN, 1.0), threads=1)
@@ -142,12 +133,12 @@ def test_a_point_lies_in_the_box_of_its_region():
     for scale, move in ((1.0, 0.0), (1e-3, 5.0), (1e4, -1e6)):
         points = (rng.random((500, 3)) * (4.0, 1.0, 0.01) * scale + move).astype(np.float32)
         grid = make_grid(np.stack([points.min(0), points.max(0)]).astype(np.float64))
-        numbers = np.array([region_at(grid, point) for point in points])
+        numbers = np.array([cube_at(grid, point) for point in points])
         assert (numbers >= 0).all()
         for times in (1, 8):
-            boxes = boxes_of(grid, numbers, times)
+            boxes = region_boxes(grid, numbers, times)
             assert (points >= boxes[:, :3]).all() and (points <= boxes[:, 3:]).all()
-    assert region_at(grid, np.full(3, 1e9, np.float32)) == -1
+    assert cube_at(grid, np.full(3, 1e9, np.float32)) == -1
 
 
 # --- frames ---------------------------------------------------------------------------------------
@@ -237,13 +228,13 @@ def test_a_budget_of_certificates_is_kept():
 def test_memory_is_bounded():
     lit = rooms()
     store = RegionStore(World(lit), LampTable(lit.lights).at(lit.light_positions(0.0)))
-    store.grid.wanted[:: len(store.grid.wanted) // 50] = True
+    store.wanted[:: len(store.wanted) // 50] = True
     made = store.certify(Budget(), threads=2).certificates
-    assert made > 50 and store.bytes > 0 and not store.grid.wanted.any() and store.grid.certified.any()
+    assert made > 50 and store.bytes > 0 and not store.wanted.any() and store.certified.any()
     store.keep_within(store.bytes)
-    assert store.grid.certified.any()
+    assert store.certified.any()
     store.keep_within(store.bytes - 1)
-    assert not store.grid.certified.any()
+    assert not store.certified.any()
 
 
 def test_reasons_name_what_hides_a_light():

@@ -17,9 +17,9 @@ from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import BEHIND, GOING, MIDDLES, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene, triangles
-from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.culling.rest import Changed, Rest, changes
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.scene.animation import Animation, TrackSet
 from tracer.scene.deformation import Deformation, deformed
 from tracer.scene.model import SceneObject, empty_quadrics

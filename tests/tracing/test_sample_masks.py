@@ -8,8 +8,12 @@ import pytest
 import tracer
 from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.worlds import scene
-from tracer.culling.certified.prepared_triangles import PREPARED, Lamp, prepare_in_tree
-from tracer.culling.certified.seen_by_lamp import (
+from tracer.culling.shadow_testing import LIGHT_MARGIN
+from tracer.geometry.rays import ray_batch
+from tracer.runtime.kernels import kernel
+from tracer.scene.lights import LampTable, Light
+from tracer.simd import address_of, load_three, local_memory
+from tracer.visibility.area_light_tests import (
     KEPT,
     MOST_SAMPLES,
     SAMPLES,
@@ -18,12 +22,8 @@ from tracer.culling.certified.seen_by_lamp import (
     ask_triangles,
     put_samples,
 )
-from tracer.culling.certified.static_geometry import StaticGeometry
-from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.geometry.rays import ray_batch
-from tracer.runtime.kernels import kernel
-from tracer.scene.lights import LampTable, Light
-from tracer.simd import address_of, load_three, local_memory
+from tracer.visibility.prepared_triangles import PREPARED, Lamp, prepare_in_tree
+from tracer.visibility.static_geometry import StaticGeometry
 
 LANES, MANY = 16, 40  # points, and samples: not a whole number of vectors
 

@@ -10,16 +10,16 @@ import tracer
 from tests.sweeps import cases
 from tests.tracing.nasty_worlds import nasty_walk, static_part, with_lamps
 from tests.tracing.spaces import crossed_by, environment_store, point_lamps, voxel_store
-from tracer.culling.environments.octree import HIDDEN, OUTSIDE
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.culling.rest import nothing_rests
 from tracer.culling.verdicts import Verdict
-from tracer.culling.voxels.grid import voxel_at
-from tracer.culling.voxels.tell import Stop, index_of
 from tracer.geometry.world import World
 from tracer.inspect.path_records import VERDICTS
 from tracer.inspect.ray_tree import ray_tree
+from tracer.neighbours.environments.octree import HIDDEN, OUTSIDE
+from tracer.neighbours.voxels.tell import Stop
 from tracer.scene.lights import LampTable, Light
+from tracer.visibility.grid import cube_at, index_of
 
 
 def test_the_walk_that_is_told_ends_as_the_ray_does():
@@ -35,7 +35,7 @@ def test_the_walk_that_is_told_ends_as_the_ray_does():
             points = (low + rng.random((12, 3)) * (high - low)).astype(np.float32)
             hidden = crossed_by(rows, place.astype(np.float64), points.astype(np.float64))
             for point, blocked in zip(points, hidden.tolist(), strict=True):
-                number, walk = voxel_at(store.grid, point), store.walked(point, light)
+                number, walk = cube_at(store.grid, point), store.walked(point, light)
                 assert (walk is None) == (number < 0)
                 if walk is None:
                     continue

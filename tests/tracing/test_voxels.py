@@ -17,11 +17,12 @@ from tests.tracing.worlds import scene, wall
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW, shadow_mode
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
-from tracer.culling.voxels.grid import BLOCK, box_of, make_grid, voxel_at, voxels_for
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
+from tracer.neighbours.voxels.grid import BLOCK, ROOM, make_grid, voxels_for
 from tracer.scene.lights import LampTable, Light
+from tracer.visibility.grid import boxes_of, cube_at
 
 # --- the grid -------------------------------------------------------------------------------------
 
@@ -31,12 +32,12 @@ def test_points_lie_in_the_boxes_of_their_voxels_and_grids_are_no_finer_than_ask
     for size, move, wanted in ((1.0, 0.0, 4096), (1e-3, 5.0, 1 << 20), (1e4, -1e6, 30000), (1.0, 0.0, 1)):
         points = (rng.random((300, 3)) * (4.0, 1.0, 0.001) * size + move).astype(np.float32)
         grid = make_grid(np.stack([points.min(0), points.max(0)]).astype(np.float64), wanted)
-        assert grid.voxels <= max(wanted, BLOCK**3) and grid.nx % BLOCK == grid.ny % BLOCK == grid.nz % BLOCK == 0
+        assert grid.cubes <= max(wanted, BLOCK**3) and grid.nx % BLOCK == grid.ny % BLOCK == grid.nz % BLOCK == 0
         for point in points:
-            number = voxel_at(grid, point)
-            box = box_of(grid, number)
+            number = cube_at(grid, point)
+            box = boxes_of(grid, np.array([number]), ROOM)[0]
             assert number >= 0 and (point >= box[:3]).all() and (point <= box[3:]).all()
-    assert voxel_at(grid, np.full(3, 1e9, np.float32)) == -1
+    assert cube_at(grid, np.full(3, 1e9, np.float32)) == -1
 
 
 def test_less_memory_means_larger_voxels():
@@ -55,12 +56,12 @@ def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
         world = World(static_part(walk.scene))
         store = voxel_store(world, world.scene.light_positions(0.0))
         rows = world.triangles_of(0).rows.astype(np.float64)
-        named = [set(store.contents(number).tolist()) for number in range(store.grid.voxels)]
+        named = [set(store.contents(number).tolist()) for number in range(store.grid.cubes)]
         across = np.linalg.norm(np.cross(rows[:, 3:6], rows[:, 6:]), axis=1)
         for i in np.flatnonzero(across > 0)[:60]:
             for u, v in np.sort(rng.random((20, 2)), axis=1):
                 point = rows[i, :3] + u * rows[i, 3:6] + (1.0 - v) * rows[i, 6:]
-                number = voxel_at(store.grid, point.astype(np.float32))
+                number = cube_at(store.grid, point.astype(np.float32))
                 assert number >= 0 and i in named[number], (seed, i)
 
 
@@ -86,7 +87,7 @@ def test_whatever_is_proved_of_a_voxel_holds_for_the_rays_into_it(accelerator: s
                 some = np.unique(np.r_[rng.permutation(numbers)[:40], numbers[rng.permutation(edge)[:60]]])
                 if not len(some):
                     continue
-                boxes = np.array([box_of(store.grid, int(number)) for number in some])
+                boxes = boxes_of(store.grid, some, ROOM)
                 part = np.where(rng.random((len(some), 24, 1)) < 0.4, rng.integers(0, 2, (len(some), 24, 3)),
                                 rng.random((len(some), 24, 3)))  # fmt: skip
                 ends = (boxes[:, None, :3] + part * (boxes[:, None, 3:] - boxes[:, None, :3])).reshape(-1, 3)
@@ -173,6 +174,6 @@ def test_a_light_that_moves_is_classified_anew_and_others_are_not():
     assert store.state_at(np.array([1, 1, 0], np.float32), 1) == "none"
     assert not shadow_mode(store.words, 1).any() and shadow_mode(store.words, 0).any()
     made = store.classify(np.inf, 2).certificates
-    assert 0 < made < fresh.grid.voxels
+    assert 0 < made < fresh.grid.cubes
     assert np.array_equal(store.words, fresh.words)
     assert store.classify(np.inf, 1).certificates == 0, "nothing is left to do"

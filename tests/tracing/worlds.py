@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tracer.culling.certified.store import CertificateStore
 from tracer.methods.certified import CertifiedCells
+from tracer.neighbours.certified.store import CertificateStore
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation
 from tracer.scene.model import (

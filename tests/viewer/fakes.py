@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, MOVING_SHADOW, TRACED
-from tracer.culling.voxels.grid import VoxelGrid
-from tracer.culling.voxels.tell import VoxelStates
 from tracer.frame import Frame, Settings
 from tracer.geometry.structure import BuiltPart
 from tracer.geometry.tree_parts import PartsAt, nothing_at
+from tracer.neighbours.voxels.tell import VoxelStates
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
     Camera,
@@ -30,6 +29,7 @@ from tracer.scene.model import (
     empty_quadrics,
 )
 from tracer.statistics import CutCounts, FrameStatistics, WrongCounts
+from tracer.visibility.grid import Grid
 
 TINY_SCENE = """
 b 0.3 0.4 0.5
@@ -184,8 +184,8 @@ def with_cuts(frame: Frame) -> Frame:
 def with_voxels(frame: Frame) -> Frame:
     """The frame with 16 x 8 x 8 voxels in the camera's view, before and behind what is seen, in states drawn by lot;
     the third light has none."""
-    grid = VoxelGrid(-2.0, -0.25, -1.0, 4.0, 16, 8, 8)
-    words = np.random.default_rng(4).integers(0, 2, grid.voxels + 1).astype(np.uint32)
+    grid = Grid(-2.0, -0.25, -1.0, 4.0, 16, 8, 8)
+    words = np.random.default_rng(4).integers(0, 2, grid.cubes + 1).astype(np.uint32)
     for light in range(frame.lights):
         words |= np.random.default_rng(light).integers(0, 3, len(words)).astype(np.uint32) << np.uint32(2 + 2 * light)
     states = VoxelStates(grid, words, np.arange(frame.lights) != 2)

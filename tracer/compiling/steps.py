@@ -17,9 +17,6 @@ from numpy.typing import NDArray
 import tracer.methods.cache
 import tracer.methods.cells  # noqa: F401
 from tracer.culling.cells import units_of
-from tracer.culling.certified.certify import COUNTERS as CERTIFYING
-from tracer.culling.certified.cost_model import CostModel
-from tracer.culling.certified.scheduler import Budget
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.frame_in_progress import FrameInProgress
 from tracer.geometry.poses import Poses
@@ -33,6 +30,7 @@ from tracer.methods import certified_lights
 from tracer.methods.certified import CertifiedCells
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.renderer import Renderer
 from tracer.runtime.kernels import entry
 from tracer.scene.animation import Animation
@@ -51,6 +49,8 @@ from tracer.scene.model import (
 )
 from tracer.settings import Settings
 from tracer.simd import f32_at, i32_at
+from tracer.visibility.budget import COUNTERS as CERTIFYING
+from tracer.visibility.budget import Budget
 
 # What is made ready, with about how much of the whole time it takes when compiled.
 SHARES = {
@@ -186,7 +186,7 @@ def _certify_regions(accelerator: str) -> None:
     assert isinstance(certified, CertifiedLights) and certified.store is not None
     StageTable(certified.stages(frame, 0, learns=True), verify=False)
     store = certified.store
-    store.grid.wanted[:1] = True
+    store.wanted[:1] = True
     store.certify(Budget(), 1)
     store.hidden_by(np.zeros(3, np.float32), 0)
 

@@ -16,8 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives
+
+FEW = 8  # boxes of objects that rest, at most: more become one
+AWAY = 1e-4  # of a scene's largest coordinate, by which these boxes are larger
 
 
 class Resting(NamedTuple):
@@ -87,3 +91,13 @@ class Rest:
         """A further frame in which nothing is to rest; the next to be followed is a first one again."""
         self._poses, self._shapes = None, {}
         self.now = nothing_rests(len(self.now.since))
+
+
+def boxes_at_rest(resting: Resting, largest: float) -> NDArray[np.float32]:
+    """Boxes (k, 6) around what rests, with room for all hits on it, in a scene with this largest coordinate."""
+    boxes = resting.boxes[resting.since > 0]
+    if len(boxes) > FEW:
+        boxes = np.concatenate([boxes[:, :3].min(0), boxes[:, 3:].max(0)])[None]
+    if len(boxes):
+        boxes = boxes - NO_BOX * np.float32(AWAY * max(float(np.abs(boxes).max()), largest))
+    return np.ascontiguousarray(boxes, np.float32)

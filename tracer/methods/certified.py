@@ -1,7 +1,7 @@
 """Certified cells: shadow rays are culled by what is proven of the cells in which they end (docs/certified-cells.md).
 
 Before shading, certificates are made for what the primary hits are about to need and what other rays requested in the
-last frame (`tracer.culling.certified`).  In shadow testing `find` leads each point to its cell, `choose` answers the
+last frame (`tracer.neighbours.certified`).  In shadow testing `find` leads each point to its cell, `choose` answers the
 rays that the cell's certificates say all about, and tests the candidates of those that they say much about; rays of
 lamps, which have no certificates, it answers for all samples at once.  `finish` notes what reflected and refracted rays
 have missed.
@@ -12,25 +12,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.find_lamp_answers import find_answers
-from tracer.culling.certified.lamp_answers import LAMP_ANSWER_ROWS, answer_sample, lamp_answers_in
-from tracer.culling.certified.lookup import (
-    CELL_POINT_ROWS,
-    cell_points_in,
-    cull_by_certificates,
-    find_cells,
-    record_cells,
-)
-from tracer.culling.certified.requests import (
-    Requests,
-    make_requests,
-    request_at_hits,
-    request_at_points,
-    requests_of,
-)
-from tracer.culling.certified.scheduler import Budget, CertificateScheduler, Counts
-from tracer.culling.certified.store import CertificateStore
-from tracer.culling.certified.view import view_at
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
@@ -38,6 +19,25 @@ from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.memory import borrowed
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.neighbours.area_lights.find_lamp_answers import find_answers
+from tracer.neighbours.area_lights.lamp_answers import LAMP_ANSWER_ROWS, answer_sample, lamp_answers_in
+from tracer.neighbours.certified.lookup import (
+    CELL_POINT_ROWS,
+    cell_points_in,
+    cull_by_certificates,
+    find_cells,
+    record_cells,
+)
+from tracer.neighbours.certified.requests import (
+    Requests,
+    make_requests,
+    request_at_hits,
+    request_at_points,
+    requests_of,
+)
+from tracer.neighbours.certified.scheduler import CertificateScheduler
+from tracer.neighbours.certified.store import CertificateStore
+from tracer.neighbours.certified.view import view_at
 from tracer.runtime.kernels import entry, kernel
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
@@ -45,6 +45,7 @@ from tracer.shading.wave import wave_in
 from tracer.simd import any_lane, i32x16, i64_at, select
 from tracer.simd.records import pack
 from tracer.statistics import FrameStatistics
+from tracer.visibility.budget import Budget, Counts
 
 SET_UP, SET_UP_LIGHT = 2e-6, 2e-7  # seconds for each primitive, and for each of these and each light
 

@@ -2,9 +2,9 @@
 
 This is what the method `certified` does where a scene has more lights than a cell's word has room for.  Before shading,
 the regions are certified that primary hits lie in, and those in which rays of the last frame have ended
-(`tracer.culling.regions`).  In shadow testing `select` says which lights each vector of points must look at.  Of the
+(`tracer.neighbours.regions`).  In shadow testing `select` says which lights each vector of points must look at.  Of the
 lamps that are left, `approach` finds out from which points they are hidden, sample by sample, by what hides them from
-neighbours (`tracer.culling.certified.hiders`); `choose` answers these rays.
+neighbours (`tracer.neighbours.area_lights.recent_occluders`); `choose` answers these rays.
 """
 
 from __future__ import annotations
@@ -14,12 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.error_bounds import BLUR, BOX, ROW, SureHitLength
-from tracer.culling.certified.hidden_samples import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
-from tracer.culling.certified.hiders import Hiders, find_hidden, is_lamp
-from tracer.culling.certified.scheduler import Budget, Counts
-from tracer.culling.regions.lookup import look, want_around
-from tracer.culling.regions.store import RegionStore, RegionView
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
@@ -27,6 +21,10 @@ from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, borrowed
 from tracer.geometry.rays import RAY_OFFSET
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.neighbours.area_lights.hidden_samples import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
+from tracer.neighbours.area_lights.recent_occluders import RecentOccluders, find_hidden, is_lamp
+from tracer.neighbours.regions.lookup import look, want_around
+from tracer.neighbours.regions.store import RegionStore, RegionView
 from tracer.runtime.kernels import entry, kernel
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
@@ -36,6 +34,8 @@ from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x
 from tracer.simd import select as choose_lanes
 from tracer.simd.records import I64x2D, pack, reading
 from tracer.statistics import FrameStatistics
+from tracer.visibility.budget import Budget, Counts
+from tracer.visibility.error_bounds import BLUR, BOX, ROW, SureHitLength
 
 SET_UP = 1.5e-6  # seconds for each primitive
 WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
@@ -50,7 +50,7 @@ class Selection(NamedTuple):
 
     regions: RegionView
     looks: I64x2D
-    hiders: Hiders
+    recent: RecentOccluders
 
 
 selection_at = reading(Selection)
@@ -67,12 +67,12 @@ def select(data, call, light, count, counts):
 def approach(data, call, light, count, counts):
     """Find from which points a lamp is hidden, and pass over it where that is all of them."""
     given, selection = call_at(call), selection_at(data)
-    looks, hiders = selection.looks, selection.hiders
-    if not is_lamp(hiders, light):
+    looks, recent = selection.looks, selection.recent
+    if not is_lamp(recent, light):
         return
     points, batch = points_in(given.points), shadow_batch_in(given.shadows)
     hidden, looked = hidden_samples_in(scratch_of(given)), looked_at(looks, light, count)
-    find_hidden(hiders, points, batch, hidden, light, looked, count, i64_at(counts))
+    find_hidden(recent, points, batch, hidden, light, looked, count, i64_at(counts))
     if looked != 0:
         for v in range(vectors(count)):
             if hidden.some[v] == ALL:
@@ -83,7 +83,7 @@ def approach(data, call, light, count, counts):
 def choose(data, call, light, count, counts):
     """Answer those rays of a lamp's sample that are certainly blocked."""
     given, selection = call_at(call), selection_at(data)
-    if is_lamp(selection.hiders, light):
+    if is_lamp(selection.recent, light):
         hidden, batch = hidden_samples_in(scratch_of(given)), shadow_batch_in(given.shadows)
         answer_hidden(hidden, given.nth, count, batch, i64_at(counts))
 
@@ -109,7 +109,7 @@ def want_in_tiles(selection, camera, tiles, numbers, buffers):
             depth = gather_f32x16(address_of(depths), place)
             dx, dy, dz = primary_direction(camera, to_f32(x), to_f32(y))
             room = np.float32(2 * RAY_OFFSET) * (maximum(depth, -depth) + largest)
-            want_around(regions.grid, eye[0] + depth * dx, eye[1] + depth * dy, eye[2] + depth * dz, room, hit)
+            want_around(regions, eye[0] + depth * dx, eye[1] + depth * dy, eye[2] + depth * dz, room, hit)
 
 
 class CertifiedLights(ShadowMethod):
@@ -118,7 +118,7 @@ class CertifiedLights(ShadowMethod):
     def __init__(self, services: Services) -> None:
         super().__init__(services)
         self.store: RegionStore | None = None
-        self._rows = NO_TRIANGLES  # what hiders are taken from, where there are lamps
+        self._rows = NO_TRIANGLES  # what recent occluders are taken from, where there are lamps
         self.made_now = False  # whether the store has been set up in this frame
         self._counts = Counts()
 
@@ -141,7 +141,7 @@ class CertifiedLights(ShadowMethod):
         """Certify regions for so many seconds, at most."""
         store = self.store
         assert store is not None, "followed before"
-        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._hiders(frame.shading.lamps))
+        selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._recent(frame.shading.lamps))
         block, shares = pack(selection), np.array_split(np.arange(len(frame.tiles)), 8 * frame.workers)
 
         def work(chunk: int, worker: int) -> None:
@@ -153,26 +153,26 @@ class CertifiedLights(ShadowMethod):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "followed before"
         looks = np.zeros((len(frame.lights), WORDS), np.int64)
-        selection = Selection(self.store.view(), looks, self._hiders(frame.shading.lamps))
+        selection = Selection(self.store.view(), looks, self._recent(frame.shading.lamps))
         if not self._has_lamps(frame.shading.lamps):
             return [Stage(selection, select=select, looks=looks)]
         rows = HIDDEN_SAMPLE_ROWS
         return [Stage(selection, select=select, approach=approach, choose=choose, rows=rows, looks=looks)]
 
     def _has_lamps(self, lamps: Lamps) -> bool:
-        """Whether any light has so many samples that hiders are asked about it."""
+        """Whether any light has so many samples that recent occluders are asked about it."""
         return bool((np.diff(lamps.first) >= self.services.cost_model.least_samples).any())
 
-    def _hiders(self, lamps: Lamps) -> Hiders:
+    def _recent(self, lamps: Lamps) -> RecentOccluders:
         assert self.store is not None, "followed before"
         placed = self.services.world.placed
         if not len(self._rows) and self._has_lamps(lamps):
             triangles = self.services.world.triangles_of(0)
             self._rows = aligned_rows(len(triangles.rows), ROW)
             self._rows[:, :BLUR], self._rows[:, BLUR], self._rows[:, BOX:] = triangles
-        return Hiders(
+        return RecentOccluders(
             self._rows,
-            SureHitLength(len(self._rows), self.store.longest_sure, 0.0),
+            SureHitLength(len(self._rows), self.store.hidden.blockers.longest, 0.0),
             lamps.places,
             lamps.radii,
             lamps.samples,

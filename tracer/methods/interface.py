@@ -22,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cells import primitives_are_units
-from tracer.culling.certified.cost_model import CostModel
 from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import Resting
@@ -30,6 +29,7 @@ from tracer.culling.stages import COLUMNS, Stages
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import MOST_TOGETHER
 from tracer.geometry.camera import Pinhole
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.runtime.kernels import Entry
 from tracer.shading.buffers import Buffers
 from tracer.shading.shading_data import ShadingData

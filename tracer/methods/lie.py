@@ -1,5 +1,5 @@
 """Local illumination environments: cells of an octree that know which lights shine into them, and what blocks each
-(`tracer.culling.environments`).
+(`tracer.neighbours.environments`).
 
 Before shading, the cells are settled that primary hits lie in, and those in which rays of the last frame have ended.
 In shadow testing `find` leads each point to its cell, `select` passes over the lights that are hidden from all of its
@@ -14,10 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.environments.ask import answer, find_cells, select_lights
-from tracer.culling.environments.octree import cells_at, environments_at
-from tracer.culling.environments.sample import seen_points, settle_by_samples
-from tracer.culling.environments.store import EnvironmentStore
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
@@ -25,6 +21,10 @@ from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import borrowed
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.neighbours.environments.ask import answer, find_cells, select_lights
+from tracer.neighbours.environments.octree import cells_at, environments_at
+from tracer.neighbours.environments.sample import seen_points, settle_by_samples
+from tracer.neighbours.environments.store import EnvironmentStore
 from tracer.runtime.kernels import entry, kernel
 from tracer.runtime.parallel import for_each_chunk
 from tracer.shading.points import points_in

@@ -1,7 +1,7 @@
 """The light buffer: what each light sees in each direction is kept, and shadow rays are looked up in it (Haines,
 Greenberg 1986).
 
-Around every point light stands a cube of cells (`tracer.culling.lightbuffer`), of all that never moves, kept for as
+Around every point light stands a cube of cells (`tracer.neighbours.lightbuffer`), of all that never moves, kept for as
 long as the light stays where it is; a second one of what rests, made again when an object starts or stops; and a small
 one of what moves, made for each frame.  Lamps with several samples, and lights that move, are traced.
 """
@@ -14,9 +14,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.certified.scheduler import Counts
-from tracer.culling.lightbuffer.cubes import LEAST_SIDE, Cube, CubeMaker, Items, items_of
-from tracer.culling.lightbuffer.lookup import (
+from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.culling.rest import nothing_rests
+from tracer.culling.shadow_testing import shadow_batch_in
+from tracer.culling.stages import call_at, scratch_of
+from tracer.culling.verdicts import Answered, CullReason, Verdict
+from tracer.geometry.accelerators import KD_TREE
+from tracer.geometry.rays import RAY_OFFSET
+from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.neighbours.lightbuffer.cubes import LEAST_SIDE, Cube, CubeMaker, Items, items_of
+from tracer.neighbours.lightbuffer.lookup import (
     CELLS,
     COLUMNS,
     DEPTHS,
@@ -32,23 +39,16 @@ from tracer.culling.lightbuffer.lookup import (
     LightBuffers,
     ask_buffers,
 )
-from tracer.culling.lightbuffer.moving import SIDE as MOVING_SIDE
-from tracer.culling.lightbuffer.moving import depths_of
-from tracer.culling.lightbuffer.rays import RAY_ROWS, buffer_rays_in
-from tracer.culling.lightbuffer.tell import LightCube, Said, tell
-from tracer.culling.modes import MAX_CULLED_LIGHTS
-from tracer.culling.rest import nothing_rests
-from tracer.culling.shadow_testing import shadow_batch_in
-from tracer.culling.stages import call_at, scratch_of
-from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.geometry.accelerators import KD_TREE
-from tracer.geometry.rays import RAY_OFFSET
-from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.neighbours.lightbuffer.moving import SIDE as MOVING_SIDE
+from tracer.neighbours.lightbuffer.moving import depths_of
+from tracer.neighbours.lightbuffer.rays import RAY_ROWS, buffer_rays_in
+from tracer.neighbours.lightbuffer.tell import LightCube, Said, tell
 from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.simd import i64_at
 from tracer.simd.records import reading
 from tracer.statistics import FrameStatistics
+from tracer.visibility.budget import Counts
 
 LONGEST = 8  # candidates of a record, at most
 COARSER = 2  # times that the cells of what rests are wider

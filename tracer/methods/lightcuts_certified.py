@@ -11,12 +11,12 @@ import numpy as np
 from numba import carray
 
 from tracer.culling.counters import SHADOW_COUNTERS
-from tracer.culling.regions.lookup import look
-from tracer.culling.regions.store import RegionView
 from tracer.culling.stages import call_at, selects, vectors
 from tracer.methods.certified_lights import WORDS, CertifiedLights
 from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.lightcuts import Lightcuts
+from tracer.neighbours.regions.lookup import look
+from tracer.neighbours.regions.store import RegionView
 from tracer.runtime.kernels import entry
 from tracer.shading.lightcuts.block import BLOCK, Clusters
 from tracer.shading.lightcuts.hidden import leave_out_hidden, see

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from tracer.culling.certified.scheduler import Counts
 from tracer.methods.interface import FrameView, Services, ShadowMethod
 from tracer.statistics import FrameStatistics
+from tracer.visibility.budget import Counts
 
 NOWHERE = np.empty(0, np.int32)  # instead of the cells of pixels, for further samples
 

@@ -1,4 +1,5 @@
-"""Voxel occlusion testing: cubes of space that are known to be lit or in shadow as a whole (`tracer.culling.voxels`).
+"""Voxel occlusion testing: cubes of space that are known to be lit or in shadow as a whole
+(`tracer.neighbours.voxels`).
 
 Before shading, the voxels of the scene are classified for each point light, anew where it has moved.  In shadow testing
 `find` leads each point to its voxel, and `choose` answers its rays: by the state of that voxel, or of the first on the
@@ -17,17 +18,18 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS, POINT_MODE_ROWS, look_up, po
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.culling.voxels.store import VoxelStore
-from tracer.culling.voxels.tell import Stop
-from tracer.culling.voxels.view import voxel_view_at
-from tracer.culling.voxels.walk import full_and_null, voxels_at, walk
 from tracer.geometry.boxes import segments_miss_box
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.neighbours.voxels.store import VoxelStore
+from tracer.neighbours.voxels.tell import Stop
+from tracer.neighbours.voxels.view import voxel_view_at
+from tracer.neighbours.voxels.walk import full_and_null, walk
 from tracer.runtime.kernels import entry
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store
+from tracer.visibility.grid import cubes_at
 
 
 @entry
@@ -39,7 +41,7 @@ def find(data, call, light, count, counts):
     for v in range(vectors(count)):
         found.looked_up[v] = 0
         x, y, z = load_three(points.lifted, v)
-        store(address_of(found.unit) + 64 * v, voxels_at(grid, x, y, z))
+        store(address_of(found.unit) + 64 * v, cubes_at(grid, x, y, z, grid.nx * grid.ny * grid.nz))
     if given.bounce == 0 and len(voxels.cell) > 0:
         wave = wave_in(given.rays, count)
         for i in range(wave.size):

@@ -34,7 +34,7 @@ _PACKAGE = Path(__file__).parents[1]  # the tracer
 _ROOT = _PACKAGE.parent  # of the packages
 # What kernels are made of: nothing else in the package ends up in machine code.
 _KERNEL_SOURCES = (
-    "simd/", "geometry/", "culling/", "shading/", "methods/", "inspect/ray_probe.py",
+    "simd/", "geometry/", "culling/", "visibility/", "neighbours/", "shading/", "methods/", "inspect/ray_probe.py",
     "scene/model.py", "scene/lights.py",
 )  # fmt: skip
 _COMPILERS = ("runtime/kernels.py", "runtime/subkernels.py")

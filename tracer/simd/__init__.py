@@ -33,6 +33,7 @@ from tracer.simd.addresses import (
     load_i32x16,
     load_i64,
     local_memory,
+    mark,
     prefetch,
     store,
     store_bytes,

@@ -134,6 +134,18 @@ def store_bytes(typingctx, address, value):
 
 
 @operation
+def mark(typingctx, address):
+    """Write a byte 1 to an address, where other threads may write the same at the same time."""
+
+    def codegen(context, builder, sig, args):
+        pointer = builder.inttoptr(args[0], ir.IntType(8).as_pointer())
+        builder.store_atomic(ir.Constant(ir.IntType(8), 1), pointer, "monotonic", 1)
+        return context.get_dummy_value()
+
+    return types.void(types.int64), codegen
+
+
+@operation
 def call_entry(typingctx, entry, a, b, c, d, e):
     """Call machine code (see `tracer.runtime.kernels.Entry`) at an address, with five int64."""
 

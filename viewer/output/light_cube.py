@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.culling.lightbuffer.cubes import Cube
-from tracer.culling.lightbuffer.tell import full_depths, list_lengths
 from tracer.culling.modes import ShadowMode
+from tracer.neighbours.lightbuffer.cubes import Cube
+from tracer.neighbours.lightbuffer.tell import full_depths, list_lengths
 from viewer.state.palette import BACKGROUND, GREY, LIGHT, SHADOW, Color, color_map
 from viewer.util.numbers import count, percent
 from viewer.views.legend import Entry, Legend, Scale

@@ -11,15 +11,15 @@ from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import View, can_draw
-from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words
 from viewer.views.legend import Legend, lights_in_words
 
 USUAL = DrawOptions()
 
 
-def view_of(view: View) -> DrawnView:
+def view_of(view: View) -> FrameView:
     """Return the view of this name."""
-    return cast(DrawnView, view.declared)
+    return cast(FrameView, view.declared)
 
 
 def colorize(frame: Frame, draw: DrawOptions = USUAL, fate: Fate | None = None) -> Pixels:
@@ -41,7 +41,7 @@ def values_of(frame: Frame, draw: DrawOptions) -> Values:
     return _drawable(frame, draw).values(frame, draw)
 
 
-def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
+def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
     """Return the exact value of a pixel, in a few short lines; none where the view cannot be drawn of this frame."""
     view = view_of(draw.view)
     if not view.can_draw(frame, draw.light):
@@ -51,7 +51,7 @@ def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
     return view.words(frame, draw, x, y)
 
 
-def _drawable(frame: Frame, draw: DrawOptions) -> DrawnView:
+def _drawable(frame: Frame, draw: DrawOptions) -> FrameView:
     view = view_of(draw.view)
     if not view.can_draw(frame, draw.light):
         raise ValueError(f"the frame has nothing for the view {view.label}: it has not recorded that")

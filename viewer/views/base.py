@@ -19,7 +19,7 @@ from viewer.state.views import Declaration
 from viewer.views.legend import Legend
 from viewer.views.paint import Pixels
 
-Lines = tuple[str, ...]
+Words = tuple[str, ...]
 Lights = tuple[Light, ...]
 T = TypeVar("T")
 
@@ -36,7 +36,7 @@ class Values:
     classes: bool = False
 
 
-class DrawnView(Declaration):
+class FrameView(Declaration):
     """A view: the file that declares one names an instance of a subclass `VIEW`.
 
     What a view returns is asked of frames that it can draw."""
@@ -60,7 +60,7 @@ class DrawnView(Declaration):
         """Return the exact values that it shows."""
         raise NotImplementedError
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         """Return what it shows of one pixel, in a few short lines."""
         raise NotImplementedError
 

@@ -21,12 +21,12 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY, Class
 from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count, percent
-from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, hits, once, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, single
 from viewer.views.legend import Entry, Legend, Note, NoteKind, Scale, fact
 from viewer.views.paint import by_class, by_number, in_range
 
 
-class ClassView(DrawnView):
+class ClassView(FrameView):
     """A view of classes in flat colours."""
 
     is_flat = True
@@ -79,7 +79,7 @@ class ClassView(DrawnView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(self.found(frame, draw), self.what, hits(frame), classes=True)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         name = self.classes[self.found(frame, draw)[y, x]].name
         return tuple(re.split(": |, ", name) if re.search(": |, ", name) else name.split())
 
@@ -160,7 +160,7 @@ def culled_by_modes(frame: Frame, light: int | None = None, number: int | None =
     return (Entry(name, None, tuple(columns), tip, quiet=True), *rows)
 
 
-class CountView(DrawnView):
+class CountView(FrameView):
     """A map of a count, of lights or of clusters of them, which is not known everywhere."""
 
     has_range = True
@@ -213,10 +213,10 @@ class CountView(DrawnView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(self.find(frame), self.what, self.seen(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         found = int(self.find(frame)[y, x])
         return ("?",) if found < 0 else self.known_words(frame, found, x, y)
 
-    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Lines:
+    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Words:
         """Return what it shows of a pixel where it is known."""
         return (str(found),)

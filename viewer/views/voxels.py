@@ -6,14 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import ShadowMode
-from tracer.culling.voxels.grid import BLOCK
-from tracer.culling.voxels.tell import STATE_NAMES, VoxelStates, index_of
 from tracer.frame import Frame
+from tracer.neighbours.voxels.grid import BLOCK
+from tracer.neighbours.voxels.tell import STATE_NAMES, VoxelStates
+from tracer.visibility.grid import index_of
 from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import GREY, SHADOW, Color
 from viewer.state.views import VOXELS
 from viewer.util.numbers import count, percent
-from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, once, single
+from viewer.views.base import FrameView, Lights, Pixels, Values, Words, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import CELL_LINE, by_color, in_bytes, met, on_line, wide_enough
@@ -35,7 +36,7 @@ STATES: dict[int, tuple[Color, str]] = {
 _PALETTE = np.asarray([color for color, _ in STATES.values()], np.float32)
 
 
-class Voxels(DrawnView):
+class Voxels(FrameView):
     label = "Voxels"
     key = "Shift+V"
     help = (
@@ -59,14 +60,14 @@ class Voxels(DrawnView):
         if not states.known[light]:
             why = "Voxels know nothing of this light: it is a lamp, or there are too many. All its rays are traced."
             return Legend(title, notes=(Note(why, NoteKind.WARNING),))
-        layer = np.take(np.arange(grid.voxels).reshape(states.shape), number, axis=cut.axis)
+        layer = np.take(np.arange(grid.cubes).reshape(states.shape), number, axis=cut.axis)
         in_slice = np.bincount(states.states(light, layer).reshape(-1), minlength=3).tolist()
         in_all = states.counts(light)
         entries = tuple(
             Entry(
                 STATE_NAMES[state],
                 STATES[state][0],
-                (percent(in_slice[state], layer.size), percent(in_all[state], grid.voxels)),
+                (percent(in_slice[state], layer.size), percent(in_all[state], grid.cubes)),
                 f"{STATES[state][1]}. {count(in_all[state])} voxels in all",
             )
             for state in (FULL, LIT, 0)
@@ -83,7 +84,7 @@ class Voxels(DrawnView):
         states = voxels_of(frame).states(draw.light, np.maximum(numbers, 0).astype(np.int64))
         return single(states, "state of the voxel", numbers >= 0, classes=True)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
         """Return the voxel's place and its state; a dash where none is seen."""
         number = int(voxels_seen(frame, draw.slice)[0][y, x])
         if number < 0:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import tracer
-from tracer.culling.lightbuffer.tell import full_depths, list_lengths
 from tracer.methods.lightbuffer import LightBuffer
+from tracer.neighbours.lightbuffer.tell import full_depths, list_lengths
 from viewer.output.light_cube import COVERED, NOTHING_THERE, by_depths, by_lists, unfolded
 from viewer.state.palette import BACKGROUND, GREY
 from viewer.util import resources

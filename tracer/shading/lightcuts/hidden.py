@@ -1,10 +1,9 @@
 """The tree of lights as a block of points sees it: without those that are proven to be hidden from all of its points.
 
 The bound of Lightcuts takes all lights of a cluster to be visible, as nothing is known about them.  Here it is known of
-some that they are not, from the regions that the points lie in (`tracer.culling.regions`): they are left out of sums,
-boxes and representatives, so that a cluster that is hidden costs nothing, and one that is hidden in part is bounded by
-what is left of it.
-"""
+some that they are not, from the regions that the points lie in (`tracer.neighbours.regions`): they are left out of
+sums, boxes and representatives, so that a cluster that is hidden costs nothing, and one that is hidden in part is
+bounded by what is left of it."""
 
 from __future__ import annotations
 

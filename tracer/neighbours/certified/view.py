@@ -1,0 +1,78 @@
+"""What kernels are given of certificates."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tracer.culling.modes import Words
+from tracer.simd.records import F32, I32, Bytes, F32x2D, I32x2D, I64x2D, reading
+from tracer.visibility.occluders import Occluders
+
+
+class RequestRows(NamedTuple):
+    """Where requests go: `tracer.neighbours.certified.requests.Requests`, a row for each tile, or without rows where
+    none are made."""
+
+    key: I32x2D
+    u: F32x2D
+    v: F32x2D
+    of: I64x2D
+
+
+class LampsView(NamedTuple):
+    """The lamps whose rays are answered by beams.
+
+    Attributes:
+        known: (lights,) bool, which lights are such lamps.
+        places, radii: (lights, 3) and (lights,) float32, the ball in which a lamp's samples lie.
+        samples: (lights,) int32, how many.
+        within: (6,) float32, a box outside of which nothing is known of where rays end.
+        moving: (6,) float32, a box around all that moves; its lower corner is far above the upper one if nothing does.
+        ray_cost: nanoseconds that tracing a ray takes, about.
+    """
+
+    known: Bytes
+    places: F32x2D
+    radii: F32
+    samples: I32
+    within: F32
+    moving: F32
+    ray_cost: int
+
+
+class CertificateView(NamedTuple):
+    """All certificates, as kernels that are called by address read them.
+
+    Attributes:
+        words, child, receivers, rooted, lists, names: of all cells (`tracer.neighbours.certified.cells.Cells`).
+        stationary: (lights,) bool, which lights are certified.
+        occluders: all that is static.
+        lamps: lights that are lamps.
+        highest: how high above a cell a ray may end, in units of the scene.
+        max_asked, first_asking: candidates that a ray tests at most, and from which bounce on (`CostModel`).
+        costly_rays: whether rays cost so much that every look-up pays (`CostModel`).
+        stride, first_vector: one in `stride` vectors of points makes requests, from that one on.
+        requests: of all tiles.
+        cell: (pixels,) int32, gets the cell at each primary hit; empty where nobody wants to know.
+    """
+
+    words: Words
+    child: I32
+    receivers: F32x2D
+    rooted: I32
+    lists: I32x2D
+    names: I32
+    stationary: Bytes
+    occluders: Occluders
+    lamps: LampsView
+    highest: float
+    max_asked: int
+    first_asking: int
+    costly_rays: bool
+    stride: int
+    first_vector: int
+    requests: RequestRows
+    cell: I32
+
+
+view_at = reading(CertificateView)

@@ -1,0 +1,165 @@
+"""The regions of a scene and the lights that each is left with, as far as rays have ended there."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.neighbours.regions.grid import blocks_around, make_grid, region_boxes
+from tracer.scene.lights import Lamps
+from tracer.simd.records import I32, I64, Bytes, F32x2D
+from tracer.visibility.budget import COUNTERS, STEPS, TESTS, Budget, Counts
+from tracer.visibility.grid import Grid, cube_at
+from tracer.visibility.hidden_lights import HiddenLights, boxes_of_samples
+
+if TYPE_CHECKING:
+    from tracer.geometry.world import World
+
+COARSE = 8  # regions on a side of the blocks for which lights are left out first
+BATCH, MOST = 64, 4096  # regions of a frame's first batch, and of any
+HARDLY = 0.8  # of a block's leaves: a region that keeps more is not worth a list of its own
+
+
+class RegionView(NamedTuple):
+    """What kernels are given.
+
+    Attributes:
+        grid: the regions.
+        certified: (regions,) int32, 1 more than the number of each region's list of lights; 0 while there is none.
+        wanted: (regions,) bool, those in which rays have ended that had no list.
+        starts, lights: (n + 1,) int64, where the lights of each list begin in the other, and (m,) int32.
+        boxes: (l, 6) float32, around each light's samples.
+        moved: (l,) bool, lights that count everywhere.
+    """
+
+    grid: Grid
+    certified: I32
+    wanted: Bytes
+    starts: I64
+    lights: I32
+    boxes: F32x2D
+    moved: Bytes
+
+
+class Block(NamedTuple):
+    """The leaves (n,) of the tree of lights that a block of regions is left with; and, where its regions share their
+    lights, what `RegionView.certified` calls that list, else 0."""
+
+    leaves: NDArray[np.int32]
+    shared: int
+
+
+class RegionStore:
+    """What is known of a world's regions."""
+
+    def __init__(self, world: World, lamps: Lamps, clock: Callable[[], float] = time.perf_counter) -> None:
+        """For these lights."""
+        self._clock = clock
+        #: What hides lights.
+        self.hidden = HiddenLights(world)
+        self.follow(lamps)
+
+    def _forget(self) -> None:
+        self.grid: Grid = make_grid(self.hidden.bounds)
+        # Memory that nobody has touched is not taken.
+        self.certified, self.wanted = np.zeros(self.grid.cubes, np.int32), np.zeros(self.grid.cubes, np.bool_)
+        self._blocks: dict[int, Block] = {}
+        self._starts, self._lights = [np.zeros(1, np.int64)], [np.empty(0, np.int32)]
+        self._lists = 0
+
+    @property
+    def bytes(self) -> int:
+        """Memory that lists take, in bytes."""
+        blocks = [block.leaves for block in self._blocks.values()]
+        return sum(a.nbytes for arrays in (self._starts, self._lights, blocks) for a in arrays)
+
+    def follow(self, lamps: Lamps) -> None:
+        """Lights are where these lamps have them now."""
+        if self.hidden.follow(boxes_of_samples(lamps)):
+            self._forget()
+
+    def certify(self, budget: Budget, threads: int, cancel: Callable[[], bool] | None = None) -> Counts:
+        """Find the lights of the regions that are wanted, as far as the budget allows.
+
+        Raises Cancelled if `cancel` turns true meanwhile; what has been found by then is kept."""
+        until, counts = self._clock() + budget.seconds, np.zeros((threads, COUNTERS), np.int64)
+        wanted, made, batch = np.flatnonzero(self.wanted), 0, BATCH
+        while made < min(len(wanted), budget.certificates) and self._clock() < until:
+            regions = wanted[made : made + int(min(batch, budget.certificates - made))]
+            blocks = blocks_around(self.grid, regions, COARSE)
+            self._certify_blocks(regions, blocks, threads, counts, cancel)
+            known = [self._blocks[number] for number in blocks.tolist()]
+            shared = np.array([block.shared for block in known])
+            self.certified[regions[shared > 0]] = shared[shared > 0]
+            alone = np.flatnonzero(shared == 0)
+            above = [known[k].leaves for k in alone]
+            leaves = self.hidden.descend(region_boxes(self.grid, regions[alone]), above, threads, counts, cancel)
+            self.certified[regions[alone]] = self._add(leaves)
+            self.wanted[regions] = False
+            made += len(regions)
+            batch = min(MOST, 2 * batch)
+        return Counts(int(counts[:, STEPS].sum()), int(counts[:, TESTS].sum()), made)
+
+    def _certify_blocks(
+        self,
+        regions: NDArray[np.int64],
+        blocks: NDArray[np.int64],
+        threads: int,
+        counts: NDArray[np.int64],
+        cancel: Callable[[], bool] | None,
+    ) -> None:
+        """Find the leaves of those blocks (n,) around regions (n,) that are not known yet.
+
+        Where some of its regions are hardly left with fewer, all of them share what the block is left with."""
+        new = np.array([number not in self._blocks for number in blocks.tolist()], np.bool_)
+        order = np.argsort(blocks[new], kind="stable")
+        numbers, first, count = np.unique(blocks[new][order], return_index=True, return_counts=True)
+        some = np.stack([first, first + count // 2, first + count - 1], 1)
+        examples = regions[new][order][some.reshape(-1)]
+        root = [np.zeros(1, np.int32)] * len(numbers)
+        of_blocks = self.hidden.descend(region_boxes(self.grid, examples[::3], COARSE), root, threads, counts, cancel)
+        above = [leaves for leaves in of_blocks for _ in range(3)]
+        left = self.hidden.descend(region_boxes(self.grid, examples), above, threads, counts, cancel)
+        fewest = np.array([len(leaves) for leaves in left]).reshape(-1, 3).min(1)
+        for number, leaves, least in zip(numbers.tolist(), of_blocks, fewest.tolist(), strict=True):
+            shared = int(self._add([leaves])[0]) if least > HARDLY * len(leaves) else 0
+            self._blocks[number] = Block(leaves, shared)
+
+    def _add(self, leaves: list[NDArray[np.int32]]) -> NDArray[np.int64]:
+        """Make lists of the lights of these leaves; what `RegionView.certified` calls them."""
+        lists = [self.hidden.lights_below(found) for found in leaves]
+        if lists:
+            self._starts.append(self._starts[-1][-1] + np.cumsum([len(lights) for lights in lists]))
+            self._lights.append(np.concatenate(lists))
+        self._lists += len(lists)
+        return self._lists - len(lists) + 1 + np.arange(len(lists))
+
+    def keep_within(self, most: float) -> None:
+        """Forget all lists where they take more than `most` bytes."""
+        if self.bytes > most:
+            self._forget()
+
+    def view(self) -> RegionView:
+        """What kernels are given now."""
+        if len(self._starts) > 1:
+            self._starts, self._lights = [np.concatenate(self._starts)], [np.concatenate(self._lights)]
+        return RegionView(
+            self.grid,
+            self.certified,
+            self.wanted,
+            self._starts[0],
+            self._lights[0],
+            self.hidden.boxes,
+            self.hidden.moved,
+        )
+
+    def hidden_by(self, point: NDArray[np.float32], light: int) -> int:
+        """The number of the triangle that hides a light from the region of a point (3,); -1 for none."""
+        number = cube_at(self.grid, point)
+        if number < 0 or self.hidden.moved[light]:
+            return -1
+        return self.hidden.hidden_by(region_boxes(self.grid, np.array([number]))[0], light)

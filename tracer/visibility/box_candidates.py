@@ -1,0 +1,130 @@
+"""Find what may come between a light and a box of space, with all that a worker needs for that.
+
+A ray that goes on beyond the box has larger functions still: U, V and D - U - V grow in step with their bounds, and
+D - T by more than its own where these clear theirs.  So what is certain of rays that end in the box is certain of those
+that enter it and go on.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.runtime.kernels import inlined, subkernel
+from tracer.simd import (
+    address_of,
+    any_lane,
+    bits_of,
+    f32x16,
+    gather_f32x16,
+    lanes_below,
+    load_columns,
+    load_i32x16,
+)
+from tracer.visibility.budget import TESTS
+from tracer.visibility.error_bounds import LANES, ROW, ZERO
+from tracer.visibility.light_space import FARTHEST, LIGHT_ROW, D, U, V, in_all_lanes, judge
+from tracer.visibility.search import HIDDEN, classifies, find_candidates
+from tracer.visibility.shaft import Shaft, box_outside, make_shaft, put_box, triangle_outside
+
+MOST = 64  # primitives that a box keeps for its parts, at most
+
+
+class Light(NamedTuple):
+    """Light `number` at place (3,) float32, in a slot of `Occluders`; no ray from it is longer than `longest`."""
+
+    number: int
+    slot: int
+    place: NDArray[np.float32]
+    longest: float
+
+
+def light_to(number: int, slot: int, place: NDArray[np.float32], low: NDArray, high: NDArray) -> Light:
+    """A light whose rays end between low and high (3,)."""
+    longest = float(np.linalg.norm(np.maximum(np.abs(place - low), np.abs(place - high)))) * 1.001
+    return Light(number, slot, place, longest)
+
+
+class BoxQuestion(NamedTuple):
+    """Which `Occluders` may come between a light, of a `number` there, and the cube around center (3,) float32 with
+    half sides `half`, to which the shaft was put?"""
+
+    occluders: Any
+    number: Any
+    light: Any
+    shaft: Any
+    center: Any
+    half: Any
+
+
+class Room(NamedTuple):
+    """What a worker looks for candidates in.
+
+    Attributes:
+        shaft: of the box at hand.
+        occluders: (LANES,) int32, what has hidden other boxes from the light, the newest of them.
+        state: (2,) int64, how many of these there are, and which is replaced next.
+    """
+
+    shaft: Shaft
+    occluders: NDArray[np.int32]
+    state: NDArray[np.int64]
+
+
+@inlined
+def make_room():
+    """Memory for a worker."""
+    return Room(make_shaft(), np.zeros(LANES, np.int32), np.zeros(2, np.int64))
+
+
+@inlined
+def forget_occluders(room):
+    """What is proved from now on does not depend on boxes that were asked about before."""
+    room.state[0] = room.state[1] = 0
+
+
+@subkernel
+def classify_for_box(question, numbers):
+    """Bits of the primitives, sixteen numbers at an address, that every ray which enters a cube is certain to hit, and
+    of those that none hits before it leaves the cube."""
+    o, light, shaft = question.occluders, question.light, question.shaft
+    t = load_columns(address_of(o.light_space[question.number]), numbers, LIGHT_ROW)
+    half = f32x16(question.half)
+    longest = f32x16(np.float32(light.longest))
+    hit, missed = judge(t, light.place, in_all_lanes(question.center), (half, half, half), longest)
+    if any_lane(~hit & ~missed):
+        # A primitive that hides nothing for certain is as large as the box that its row begins with.
+        row, firm = load_columns(address_of(o.rows), numbers, ROW), t[FARTHEST] >= ZERO
+        radius = gather_f32x16(address_of(o.error_radii[question.number]), load_i32x16(numbers))
+        missed = missed | (firm & triangle_outside(shaft, row[0:3], row[3:6], row[6:9], radius))
+        missed = missed | (~firm & box_outside(shaft, t[U:V], t[V:D]))
+    return bits_of(hit), bits_of(missed)
+
+
+classifies(BoxQuestion, classify_for_box)
+
+
+@subkernel
+def come_between(o, light, room, middle, half, rounded, given, given_count, found, counts):
+    """Find what may come between a light and the cube around middle (3,) with half sides `half`: how many primitives,
+    more than MOST for too many, or HIDDEN where one hides the whole cube.
+
+    Their numbers go into found (MOST + 2 LANES,) int32.  They are among given (given_count,) int32, or anywhere where
+    that is more than MOST; o are `Occluders`; rounded is more, in units of the scene, than planes are wrong by in
+    float32."""
+    place = np.float64(light.place[0]), np.float64(light.place[1]), np.float64(light.place[2])
+    put_box(room.shaft, place, middle, half, rounded)
+    center = np.float32(middle[0]), np.float32(middle[1]), np.float32(middle[2])
+    question = BoxQuestion(o, light.slot, light, room.shaft, center, np.float32(half))
+    if room.state[0] > 0:  # what has hidden others may hide this one
+        counts[TESTS] += room.state[0]
+        hit, _missed = classify_for_box(question, address_of(room.occluders))
+        if hit & lanes_below(room.state[0], 0) != 0:
+            return np.int64(HIDDEN)
+    count = find_candidates(question, given, given_count, found, MOST, counts)
+    if count < 0:
+        room.occluders[room.state[1]] = found[0]
+        room.state[0], room.state[1] = min(LANES, room.state[0] + 1), (room.state[1] + 1) % LANES
+    return count
