@@ -13,9 +13,9 @@ from viewer.services.capture_service import CaptureService
 from viewer.services.jobs import Job
 from viewer.services.runs import Runs
 
-_KEPT = "They are kept, and can still be saved from its panel."
-_SAVED = "Their figures, table and plot can be saved beside the pictures."
-_WRITTEN = "They are on disk already."
+_KEPT = "What is done is kept, and can still be saved from its panel."
+_SAVED = "Figures, table and plot of what is done can be saved beside the pictures."
+_WRITTEN = "What is done is on disk already."
 _COLLECTED = ("bookmarks", "presets", "recent", "tour", "last")  # which resetting the settings leaves
 
 Do = Callable[[], None]
@@ -23,13 +23,14 @@ Do = Callable[[], None]
 
 @dataclass(frozen=True)
 class Question:
-    """`answers` are names and what they do; the first changes nothing, and Escape chooses it.  It is asked as long as
-    `run`, if there is one, goes on."""
+    """`answers` are names and what they do; the first changes nothing, and Escape chooses it.  `at_end`, if there is
+    any, is done without an answer once `run` has ended."""
 
     title: str
     text: str
     answers: tuple[tuple[str, Do], ...]
     run: Run | None = None
+    at_end: Do | None = None
 
 
 class Questions:
@@ -60,7 +61,7 @@ class Questions:
 
         run = self._runs.current
         kept = _KEPT if run is not None and self._runs.exports_of(run) else _WRITTEN
-        self._ask_to_stop(f"open {name}", kept, go_on, ("Stop and open", stop))
+        self._ask_to_stop(f"open {name}", kept, go_on, ("Stop and open", stop), at_end=go_on)
 
     def before_losing_edits(self, name: str, go_on: Do) -> None:
         """Open another scene when the user agrees to lose the edits of the one that is open."""
@@ -79,14 +80,13 @@ class Questions:
         saving = [("Save and quit", save)] if run is not None and self._runs.exports_of(run) else []
         self._ask_to_stop("quit", _SAVED if saving else _WRITTEN, leave, *saving, ("Quit", leave))
 
-    def _ask_to_stop(self, goal: str, kept: str, go_on: Do, *answers: tuple[str, Do]) -> None:
+    def _ask_to_stop(self, goal: str, kept: str, go_on: Do, *answers: tuple[str, Do], at_end: Do | None = None) -> None:
         run = self._runs.current
         if run is None or run.stopping:
             go_on()
             return
-        done, frames = run.done_of
-        text = f"{done} of {frames} frames are done. {kept}"
-        self.question = Question(f"Stop the {run.name} and {goal}?", text, (("Keep running", self.drop), *answers), run)
+        title = f"Stop the {run.name} and {goal}?"
+        self.question = Question(title, kept, (("Keep running", self.drop), *answers), run, at_end)
         self._wake()
 
     def before_resetting(self, reset: Callable[[Collection[str]], None]) -> None:
@@ -99,11 +99,12 @@ class Questions:
         )
 
     def leave_when_saved(self) -> None:
-        """Quit when the results have been written that were to be saved; stay if they could not be.
-
-        A question about a run that has ended meanwhile is none any more."""
-        if self.question is not None and self.question.run is not None and self.question.run.done:
+        """Quit when the results have been written that were to be saved; stay if they could not be.  What waited for a
+        run that has ended meanwhile goes on."""
+        question = self.question
+        if question is not None and question.run is not None and question.run.done and question.at_end is not None:
             self.drop()
+            question.at_end()
         if self._leaving is None or not self._leaving[1].done:
             return
         leave, run = self._leaving

@@ -32,7 +32,7 @@ class Pace:
     """How the window traces: in what size, how fast in motion, and what it does while nothing moves."""
 
     fixed_size: bool = setting(
-        False, "Fixed size", "Trace pictures of a size of their own, not of the window's.", panel="Rendering"
+        False, "Fixed size", "Trace pictures of a resolution of their own, not of the window's.", panel="Rendering"
     )
     width: int = setting(Settings.width, "Picture width", "Of pictures of fixed size.", low=1, high=LONGEST_FIXED_SIDE,
                          applies=_fixed_size, unit=" px")  # fmt: skip

@@ -121,9 +121,9 @@ def filming(d: Driver) -> None:
     films.plan.last, films.plan.size, films.plan.legend = 4, (160, 120), True
     assert films.count == 5
     d.start("Film").wait(lambda: runs.current is not None, "the film to begin")
-    d.c.questions.before_opening("another scene", lambda: None)
+    d.c.questions.before_opening("another scene", (waits := ["to be opened"]).clear)
     d.settle()
-    assert d.c.questions.question is None, "whether to stop it is asked although it is done"
+    assert d.c.questions.question is None and not waits, "it is opened once the film has ended"
     assert films.film.whole and "film done: 5 frames" in d.said
     folder = films.film.folder
     assert folder.parent == d.pictures and len(list(folder.iterdir())) == 5
