@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,6 +32,12 @@ k flyer { visibility 1 0 1
 
 
 CAMERA = {"position": [0, 2, 3], "direction": [0, -0.5, -1], "up": [0, 1, 0], "angle": 40}
+
+
+def shell_words(line: str) -> list[str]:
+    """The words of a line as a shell takes them."""
+    said = subprocess.run(["bash", "-c", f"printf '%s\\0' {line}"], capture_output=True, env={"LC_ALL": "C.UTF-8"})
+    return [os.fsdecode(word) for word in said.stdout.split(b"\0")[:-1]]
 
 
 def run(capfd: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:

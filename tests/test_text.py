@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-import subprocess
 
+from tests.commands import shell_words
 from tests.platforms import posix_only
 from tracer.util.text import shell_line, wrapped
 
@@ -14,8 +14,7 @@ def test_words_for_a_shell_come_back_and_command_no_terminal() -> None:
     words = ["plain", "", "it's", "a\\b", "\x1b]0;title\x07", "line\nnext\u202e'", os.fsdecode(b"caf\xe9.aff"), "日本"]
     line = shell_line(words)
     assert line.isprintable()
-    said = subprocess.run(["bash", "-c", f"printf '%s\\0' {line}"], capture_output=True, env={"LC_ALL": "C.UTF-8"})
-    assert [os.fsdecode(word) for word in said.stdout.split(b"\0")[:-1]] == words
+    assert shell_words(line) == words
 
 
 def test_a_word_of_any_length_is_broken_without_measuring_it_letter_by_letter() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.commands import ROOM, run
+from tests.commands import ROOM, run, shell_words
 from tests.marbles import write_marbles
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.fakes import TINY_SCENE
@@ -52,7 +52,7 @@ def shown(desk: Desk) -> np.ndarray:
 
 def made(desk: Desk, capfd: pytest.CaptureFixture[str]) -> np.ndarray:
     """The picture that the copied command makes, started as a shell would."""
-    words = shlex.split(desk.c.pictures.command() or "")
+    words = shell_words(desk.c.pictures.command() or "")
     assert words[0] == "shadowcull"
     code, _, errors = run(capfd, *words[1:])
     assert code == 0, errors
