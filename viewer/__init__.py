@@ -6,8 +6,7 @@
     state            what the user looks at and has chosen
     util             files, messages, numbers
 
-Each knows only what is below it.  `viewer.__main__` starts the command line, and hands it the window to open.
-"""
+Each knows only what is below it.  `viewer.__main__` starts the command line, and hands it the window to open."""
 
 from __future__ import annotations
 

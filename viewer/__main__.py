@@ -1,8 +1,7 @@
 """The `shadowcull` command, and `python -m viewer`: the command line, and the window that it opens.
 
 This is the one place that knows both.  The window and all that it brings along (GL, ImGui) are imported only when it is
-opened, so that pictures and numbers can be had on machines without a screen or a GL library.
-"""
+opened, so that pictures and numbers can be had on machines without a screen or a GL library."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """A user's hands and eyes in the real window: what scenarios drive it with.
 
 Items are called as ImGui's test engine does, "//Panel/**/label": a panel, any groups in it, and a label.  What is not
-there fails within seconds, with its name.
-"""
+there fails within seconds, with its name."""
 
 from __future__ import annotations
 

@@ -5,8 +5,7 @@
 Reads lines of JSON, `{"name", "size", "scene", "folder", "settings"}`, and answers each by a line with the scenario's
 exit code.  ImGui's test engine drives the keyboard and the pointer; a scenario is a function of a `Driver` in
 `tests.viewer.scenarios`.  One process opens many windows, as most of the time that a window takes goes into starting
-Python, loading kernels and compiling shaders.  What is said meanwhile goes to standard error.
-"""
+Python, loading kernels and compiling shaders.  What is said meanwhile goes to standard error."""
 
 from __future__ import annotations
 

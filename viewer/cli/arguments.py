@@ -1,7 +1,6 @@
 """How command lines are read: the parser, whose errors are one line that asks what may have been meant, and values.
 
-A function that reads a value raises ValueError in one line.
-"""
+A function that reads a value raises ValueError in one line."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """The command `bench`: a path of frames by several methods, as the paper's Table 1.
 
-Ctrl-C ends it after the last whole frame: what is done is shown, and written where it was to go.
-"""
+Ctrl-C ends it after the last whole frame: what is done is shown, and written where it was to go."""
 
 from __future__ import annotations
 

@@ -2,8 +2,7 @@
 
 Results go to standard output; everything else goes to standard error, as a progress bar where that is a terminal and as
 next to nothing where it is not.  Ctrl-C is a wish: it is noted, and the work ends by `Cancelled` at the next report of
-progress; a second one ends it at once.
-"""
+progress; a second one ends it at once."""
 
 from __future__ import annotations
 

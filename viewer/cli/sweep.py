@@ -1,7 +1,6 @@
 """The command `sweep`: a study by several processes, kept frame by frame, and what it found as a table.
 
-Ctrl-C ends it at once: what is traced is kept, and the same command goes on from there.
-"""
+Ctrl-C ends it at once: what is traced is kept, and the same command goes on from there."""
 
 from __future__ import annotations
 

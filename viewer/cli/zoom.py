@@ -1,7 +1,6 @@
 """The command `zoom`: towards a primitive in steps, as the paper's Figure 4.
 
-Ctrl-C ends it after the last whole frame: what is done is shown, and written where it was to go.
-"""
+Ctrl-C ends it after the last whole frame: what is done is shown, and written where it was to go."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Pictures as files, and what a PNG remembers of how it was made.
 
 The text chunk `shadowcull` of a saved picture holds, as JSON, its state, the camera and the frame's statistics; opening
-it brings all that back.  Files are whole or absent, and every failure is one line.
-"""
+it brings all that back.  Files are whole or absent, and every failure is one line."""
 
 from __future__ import annotations
 

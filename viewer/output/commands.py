@@ -2,8 +2,7 @@
 
 Modes come from the frames before, and certificates and caches as well.  A picture that shows them can be made again
 where those frames are known (`ViewState.warmup`).  Where they are not, `warmup.unknown` says why, in words; a saved
-picture then carries the modes themselves, where they are all that it depends on besides its state.
-"""
+picture then carries the modes themselves, where they are all that it depends on besides its state."""
 
 from __future__ import annotations
 

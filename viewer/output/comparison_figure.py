@@ -1,8 +1,7 @@
 """The figure of one frame by several methods, side by side: the picture, enlarged crops, what differs from "none",
 and counts.
 
-Importing this loads matplotlib, as `figures` does.
-"""
+Importing this loads matplotlib, as `figures` does."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Results as files: every figure as JSON, tables as CSV, plots as pictures.
 
 The commands `bench` and `zoom` write them where their options say; the window under a name that tells what and when,
-and never over a file that is there.
-"""
+and never over a file that is there."""
 
 from __future__ import annotations
 

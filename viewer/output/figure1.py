@@ -1,7 +1,6 @@
 """The paper's Figure 1 with a frame's own numbers: its stages in their order, and what goes from each to the next.
 
-What is here is the same for the window, which draws it in a panel, and for files (`figure1_drawing`).
-"""
+What is here is the same for the window, which draws it in a panel, and for files (`figure1_drawing`)."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Figure 1 as a drawing: where its boxes, texts and arrows lie, for the window and for SVG alike.
 
 The stages stand below each other, in one column or several side by side.  Lengths are those of the unit in which texts
-are measured; y goes down.
-"""
+are measured; y goes down."""
 
 from __future__ import annotations
 

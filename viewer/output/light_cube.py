@@ -2,8 +2,7 @@
 is in shadow.
 
 The cross is what somebody sees who stands at the light, y up, and looks around: in its middle row, from the left, along
-+x, +z, -x and -z; above and below +z, up and down.
-"""
++x, +z, -x and -z; above and below +z, up and down."""
 
 from __future__ import annotations
 

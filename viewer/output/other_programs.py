@@ -1,8 +1,7 @@
 """Pictures to other programs: the desktop's clipboard, and tev or HDRView.
 
 tev is told of images by packets on a TCP connection.  A packet is its own length in bytes, as 32 bits, then its kind,
-and what belongs to that; all little endian, and texts end with a zero (https://github.com/Tom94/tev, `Ipc.h`).
-"""
+and what belongs to that; all little endian, and texts end with a zero (https://github.com/Tom94/tev, `Ipc.h`)."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """A tree of rays in words: as rows, as the window lists it and the command line prints it.
 
 A row has rows below it: a ray that was sent on, the shadow rays of a point, by light, and where there are many, those
-that have the same fate together.  Rows below are made when somebody asks for them.
-"""
+that have the same fate together.  Rows below are made when somebody asks for them."""
 
 from __future__ import annotations
 

@@ -3,8 +3,7 @@
 `Pair` traces each picture by a second method as well.  `Baseline` measures in spare time, while the picture rests and
 nothing else is wanted: the picture that is shown, by `none` and by the chosen method in turn.  All of them have modes,
 certificates and counters of their own, so that none gains by what another has found out, and the window's stay what
-they are.
-"""
+they are."""
 
 from __future__ import annotations
 

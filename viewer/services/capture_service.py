@@ -1,7 +1,6 @@
 """Files that the window writes, pictures among them, and pictures that it copies.
 
-Each is done on a thread of its own, so that the window does not wait for a disk.
-"""
+Each is done on a thread of its own, so that the window does not wait for a disk."""
 
 from __future__ import annotations
 

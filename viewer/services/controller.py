@@ -1,8 +1,7 @@
 """Constructs all services of the window, and does what concerns several of them.
 
 Panels and commands call the services.  `viewer.window.app` calls what must happen in each frame of the window, in its
-order.  Nothing here knows widgets or GL, so that tests can drive all of it without a window.
-"""
+order.  Nothing here knows widgets or GL, so that tests can drive all of it without a window."""
 
 from __future__ import annotations
 
@@ -155,6 +154,7 @@ class Controller:
         """Bring time and camera to where they should be now."""
         traced = self.traced
         self.motion.advance(traced.request.time if traced is not None and traced.whole else None)
+        self.navigator.leave_find()
 
     def apply_edits(self) -> None:
         """Have the scene edited as is wanted, once what was edited last has been seen."""
@@ -245,6 +245,7 @@ class Controller:
         deadline = time.monotonic() + timeout
         jobs = [*self.loader.close(), *self.captures.saving]
         self.runs.stop()
+        self.session.give_size_back()
         stopped = self.renderer.close(timeout)
         for job in jobs:
             stopped &= job.join(max(0.0, deadline - time.monotonic()))

@@ -4,8 +4,7 @@
 Lights that move and dynamic objects that are hidden only change the scene of a renderer, which drops what no longer
 holds (`Renderer.scene`).  All else takes another renderer, with trees of its own where geometry is another.  The
 renderer of the scene as it was read is kept, with all that it knows.  What edits change is seen by comparing the
-picture with the one before them.
-"""
+picture with the one before them."""
 
 from __future__ import annotations
 

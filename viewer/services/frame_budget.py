@@ -6,8 +6,7 @@ last frames have cost: a fixed part, a part for each primary ray and a part for 
 separately, and the rest of the frame (placing objects, making certificates). Shaded pixels are estimated apart for
 each number of samples that lamps have. Only where the primary rays alone do not fit is the resolution divided by 2,
 3, ... as well; before that, frames take a little longer than they should. More is traced only with some time to
-spare, so that pictures do not flutter between two steps.
-"""
+spare, so that pictures do not flutter between two steps."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from viewer.services.undo import Undo
 from viewer.state.notices import Notices
 from viewer.state.pixels import Point, Zoom, around
 from viewer.state.session import Session
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import Pace, ViewState
 from viewer.state.views import View
 
 
@@ -37,6 +37,7 @@ class FrameNavigator:
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
         self._restore, self._reset_modes = restore, reset_modes
         self._wanted: tuple[float, Camera, Point] | None = None
+        self._found_in: Pace | None = None  # what a counterexample, or a step of a zoom test, is shown with
 
     def go(self, number: int) -> None:
         """Go back to a frame by its number in the plots."""
@@ -64,7 +65,7 @@ class FrameNavigator:
 
     def go_to_find(self, number: int) -> None:
         """Fly to a counterexample of the hunt: forget all modes, trace the frames that taught it, and select its pixel,
-        enlarged.  The picture stays as it was found, with one sample a pixel, until something moves."""
+        enlarged.  The picture stays as it was found, in its size, with one sample a pixel, until something moves."""
         runs, scene = self._runs, self._session.scene
         if scene is None or runs.hunt is None or runs.hunt.results is None or not runs.allows(runs.hunt):
             return
@@ -107,11 +108,20 @@ class FrameNavigator:
         if warmup is not None or self._session.state.depends_on_modes:
             self._reset_modes()
         if warmup is not None:
-            width, height = state.settings.width, state.settings.height
-            if (width, height) != self._scheduler.inputs.full_size:
-                self._session.set_pace(fixed_size=True, width=width, height=height)
+            size = state.settings.width, state.settings.height
+            if size != self._scheduler.inputs.full_size:
+                self._session.fix_size(*size)
+                self._found_in = self._session.state.pace
             self._scheduler.freeze(self._session.state, warmup)
         self._wanted = (self._session.time, self._session.camera, point) if point is not None else None
+
+    def leave_find(self) -> None:
+        """Give the picture the size back that it had before a counterexample, once that was left."""
+        session = self._session
+        if self._found_in is not None and not self._scheduler.freezes(session.state):
+            if self._found_in == session.state.pace:
+                self._undo.without_undo(session.give_size_back)
+            self._found_in = None
 
     def select_when_shown(self, traced: Traced | None) -> None:
         """Select the point that was gone to once its picture is shown, whole; once in each frame of the window."""

@@ -2,8 +2,7 @@
 frames until modes settle, and more samples a pixel.
 
 `request` asks the render thread for the next frame of these, once in each frame of the window, and `take` returns what
-has come.  Nothing is asked for twice, and nothing at all while a run has the render thread.
-"""
+has come.  Nothing is asked for twice, and nothing at all while a run has the render thread."""
 
 from __future__ import annotations
 
@@ -249,7 +248,11 @@ class FrameScheduler:
     @property
     def is_frozen(self) -> bool:
         """Whether the picture stays as it was found, with one sample a pixel."""
-        return self._frozen is not None and self._frozen[0] == _what_freezes(self.inputs.state)
+        return self.freezes(self.inputs.state)
+
+    def freezes(self, state: ViewState) -> bool:
+        """Return whether the picture of a state would stay so."""
+        return self._frozen is not None and self._frozen[0] == _what_freezes(state)
 
     @property
     def outdated(self) -> bool:

@@ -2,8 +2,7 @@
 
 `inspect_pixel` is a pure function of the renderer and a pixel of a frame, asked as a query: why its shadow rays were
 culled or traced.  An answer speaks of one moment of the scene, in world space, and so it stays
-right while the camera moves and the next is on its way.
-"""
+right while the camera moves and the next is on its way."""
 
 from __future__ import annotations
 

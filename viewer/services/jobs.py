@@ -2,8 +2,7 @@
 
 The tracer reports what it does through a `Progress` callable and stops when that raises
 `Cancelled`; a `Job` is the other end of it.  The window asks it each frame what to show and
-never waits.
-"""
+never waits."""
 
 from __future__ import annotations
 
@@ -45,9 +44,8 @@ class Wake:
 class Job(Generic[Result]):
     """Runs `work(progress)` on a thread of its own.
 
-    `label` and `fraction` say how far it is; after `done`, `result` is set, or `failure` says what
-    went wrong, or neither where it was cancelled.  The end wakes the window; progress is seen often enough as it dozes.
-    """
+    `label` and `fraction` say how far it is; after `done`, `result` is set, or `failure` says what went wrong, or
+    neither where it was cancelled.  The end wakes the window; progress is seen often enough as it dozes."""
 
     def __init__(self, title: str, work: Callable[[Progress], Result], wake: Callable[[], None] = lambda: None) -> None:
         self.title, self.label, self.fraction = title, "", 0.0

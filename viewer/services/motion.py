@@ -1,7 +1,6 @@
 """Camera and time: moved by hand, glided, played.
 
-While something moves, pictures should come fast rather than fine.
-"""
+While something moves, pictures should come fast rather than fine."""
 
 from __future__ import annotations
 

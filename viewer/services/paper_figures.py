@@ -103,7 +103,7 @@ class PaperFigures:
 
         def show(c: Controller) -> None:
             c.settings.change(method=BY_MODES, symmetric=False)
-            c.session.set_pace(fixed_size=True, width=_CARDS, height=_CARDS)
+            c.session.fix_size(_CARDS, _CARDS)
             c.session.set_draw(view=View.OCCLUSION)
             said = f"Figure 3 in {_CARDS} x {_CARDS} pixels: the card that is hidden on its left is green, too"
             c.notices.say(f"{said}{self._way_back}")

@@ -6,8 +6,7 @@ has chosen them, as the method or as the view, more frames follow, until none ar
 into samples.
 
 Shadow modes are those of a lamp as it is sampled, and are dropped when the number of its samples changes.  So all
-frames of a motion have the same number, which the first frame at rest has as well, and the next has all of them.
-"""
+frames of a motion have the same number, which the first frame at rest has as well, and the next has all of them."""
 
 from __future__ import annotations
 

@@ -4,8 +4,7 @@ A query is about a frame: `query(function, frame, *arguments)` has `function(ren
 called on the render thread between two frames, while the world stands as it did in that frame, and returns a future.
 Asked the same again, it returns the same future, so that a panel may ask in each frame of the window.  Of each function
 the newest query alone is answered: an older one is cancelled, and so is one about a frame whose moment has passed.  Who
-gets a cancelled future asks again about the frame that is shown by then.  What a function raises is in its future.
-"""
+gets a cancelled future asks again about the frame that is shown by then.  What a function raises is in its future."""
 
 from __future__ import annotations
 

@@ -10,8 +10,7 @@ moves, the next request comes before the last picture is ready, and cancelling e
 An experiment is a `Task`: it has the thread, and with it the scene's world, to itself until it is
 done; the newest request of that time waits for its end.  A query (`render_request.py`) takes a moment: it is answered
 between two frames, while the world still stands as it did in the frame that it is about.  `Spare` work is done
-a step at a time while nothing else is wanted, and anything that is wanted ends a step.
-"""
+a step at a time while nothing else is wanted, and anything that is wanted ends a step."""
 
 from __future__ import annotations
 

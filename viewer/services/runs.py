@@ -2,8 +2,7 @@
 
 A run has the render thread to itself: it shares the scene's world, and has renderers, and so modes, of its own.  Its
 frames are the picture meanwhile.  What the user would change of the picture is refused, in one line that says how to
-stop the run.
-"""
+stop the run."""
 
 from __future__ import annotations
 

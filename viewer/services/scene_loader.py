@@ -1,8 +1,7 @@
 """Opens scenes and saved pictures beside the window, reads a scene again when its files change, and compiles kernels.
 
 While a scene is read the one that is open stays usable, and it stays open if the reading fails or
-is cancelled.  A second request to open takes the place of the first.
-"""
+is cancelled.  A second request to open takes the place of the first."""
 
 from __future__ import annotations
 

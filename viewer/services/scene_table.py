@@ -2,8 +2,7 @@
 
 All of it is worked out on a thread of its own, and only while somebody looks at the table; the window never waits.
 What is typed or clicked takes effect at once, and a newer picture of the same scene as soon as the pointer is not on
-the table.
-"""
+the table."""
 
 from __future__ import annotations
 

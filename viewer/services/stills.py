@@ -1,8 +1,7 @@
 """A picture by its state, or one by several methods: traced with the frames before it, drawn, and with what is kept of
 it.
 
-What the command `render`, films, figures and the window's own saved pictures have in common.
-"""
+What the command `render`, films, figures and the window's own saved pictures have in common."""
 
 from __future__ import annotations
 
@@ -60,8 +59,7 @@ def check_lights(state: ViewState, scene: Scene, everything: bool = False) -> No
 def times_before(scene: Scene, time: float, count: int) -> list[float]:
     """Times of the frames that lead up to `time`, one frame's duration apart, none before the animation starts.
 
-    A scene of one frame stands still: its frame is repeated.
-    """
+    A scene of one frame stands still: its frame is repeated."""
     start, end = scene.time_range
     if scene.frames < 2 or end <= start:
         return [time] * count

@@ -20,14 +20,14 @@ from viewer.services.controller import Controller
 from viewer.services.paper_figures import FIGURE_4, SIDE, Act, Condition, Part, is_open, open_scene, opened
 from viewer.state import verified
 from viewer.state.methods import BY_MODES, with_base
-from viewer.state.view_state import Pace
 from viewer.state.views import View
 from viewer.util.resources import default_scene
 
 SECONDS = 2.0  # that what was done can be looked at
+_PLAYED, _PICTURES = 20, 8  # frames of the path, and pictures of them, in which shadows are seen to move
 FAILS, EXAMINED = 20, 28
 """Frames of the scene figure4: the shadow is missing, and after the triangle was examined anew it is there."""
-_PACE: dict[str, Any] = {"fixed_size": True, "width": SIDE, "height": SIDE, "every_frame": True}
+_PACE: dict[str, Any] = {"width": SIDE, "height": SIDE, "every_frame": True}
 _RULES: dict[str, Any] = {"method": BY_MODES, "symmetric": False, "zoom_factor": 4.0}
 _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the picture's size: from its middle on
     sorted(itertools.product(np.arange(1, 14) / 14.0, repeat=2), key=lambda at: np.hypot(at[0] - 0.5, at[1] - 0.5))
@@ -36,13 +36,15 @@ _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the pict
 
 @dataclass(frozen=True)
 class Step:
-    """See the module; `commands` can be run from the last one; time stands `still` before its last part."""
+    """See the module; `commands` can be run from the last one; time stands `still` before its last part; `in_figure_4`
+    it speaks of that scene alone."""
 
     title: str
     text: str | Callable[[Controller], str]
     parts: tuple[Part, ...] = ()
     commands: tuple[str, ...] = ()
     still: bool = False
+    in_figure_4: bool = False
 
 
 class Tour:
@@ -54,15 +56,24 @@ class Tour:
         self.step: Step | None = None
         self._held = 0  # of the step's parts
         self._shows, self._until = False, 0.0
-        self._pace = Pace()  # as it was before the tour
 
     @property
     def is_done(self) -> bool:
         """Whether all of the step was done, and the next one comes in a moment."""
-        return self.step is not None and 0 < len(self.step.parts) == self._held
+        return self.step is not None and 0 < len(self.step.parts) == self._held and not self.lacks_figure_4
+
+    @property
+    def lacks_figure_4(self) -> bool:
+        """Whether another scene was opened than the step is about."""
+        step = self.step
+        if step is None or not step.in_figure_4 or is_open(self._c, FIGURE_4):
+            return False
+        return self._held > 0 or not step.parts[0].sets_stage
 
     def text(self, step: Step) -> str:
         """Return what to do in a step, as things are, with the keys that do it now; what is done is not asked again."""
+        if self.lacks_figure_4:
+            return "Open Figure 4 again: Show me."
         if self.is_done and callable(step.text):
             return ""
         text = step.text if isinstance(step.text, str) else step.text(self._c)
@@ -71,7 +82,6 @@ class Tour:
     def start(self) -> None:
         """Begin with the first step."""
         self._c.selection.clear()  # what was clicked before was not clicked for the tour
-        self._pace = self._c.session.state.pace
         if is_open(self._c, FIGURE_4):  # of the last tour
             open_scene(default_scene())(self._c)
         self._go_to(STEPS[0])
@@ -87,11 +97,15 @@ class Tour:
 
     def show(self) -> None:
         """Do the step for the user, part by part, each of which can be looked at for a moment."""
+        if self.lacks_figure_4:
+            self._go_to(next(step for step in STEPS if step.in_figure_4))
         self._shows = True
 
     def update(self) -> None:
         """See whether the next part of the step is done, or do it, once per frame."""
-        if self.step is None or not self.step.parts or self._c.frame is None or time.monotonic() < self._until:
+        if self.step is None or not self.step.parts or self._c.frame is None or self.lacks_figure_4:
+            return
+        if time.monotonic() < self._until:
             return
         if self._held == len(self.step.parts):
             self.skip()
@@ -103,11 +117,12 @@ class Tour:
             part.act(self._c)
         if part.holds(self._c):
             self._held += 1
-            self._until = 0.0 if part.sets_stage else time.monotonic() + SECONDS
+            at_once = part.sets_stage or any(coming.sets_stage for coming in self.step.parts[self._held :])
+            self._until = 0.0 if at_once else time.monotonic() + SECONDS
 
     def _go_to(self, step: Step | None) -> None:
-        if step in (None, STEPS[-1]) and _is_staged(self._c):  # nobody wants Kitchen in figure4's size
-            self._c.session.change(pace=self._pace)
+        if step is None and is_open(self._c, FIGURE_4):
+            self._c.session.give_size_back()
         self.step, self._held, self._shows, self._until = step, 0, False, 0.0
 
 
@@ -133,6 +148,14 @@ def _saves(c: Controller) -> bool:
 
 def _shows(view: View) -> Condition:
     return lambda c: c.session.draw.view is view
+
+
+def _shadows_moved(c: Controller) -> bool:
+    """Return whether the newest pictures show the shadows of moving objects over some of the path."""
+    newest = itertools.takewhile(lambda one: one.state.draw.view is View.MOVING_SHADOW,
+                                 reversed(c.history.records.values()))  # fmt: skip
+    times = {one.state.time for one in newest}
+    return len(times) >= _PICTURES and c.session.frame_at(max(times)) - c.session.frame_at(min(times)) >= _PLAYED
 
 
 def _shows_wrong(c: Controller) -> bool:
@@ -183,13 +206,13 @@ def _click_a_shadow(c: Controller) -> None:
 def _is_staged(c: Controller) -> bool:
     """Return whether figure4 is traced frame by frame, as its file says."""
     pace, settings = c.session.state.pace, c.session.settings
-    return replace(pace, **_PACE) == pace and replace(settings, **_RULES) == settings
+    return pace.fixed_size and replace(pace, **_PACE) == pace and replace(settings, **_RULES) == settings
 
 
 def _stage(c: Controller) -> None:
     """Learn the modes of figure4 from afar."""
     c.settings.change(**_RULES)
-    c.session.set_pace(**_PACE)
+    c.session.fix_size(**_PACE)
     c.session.set_draw(view=View.COLOR)
     c.motion.follow_path(True)
     c.session.go_to_frame(0)
@@ -199,8 +222,12 @@ def _stage(c: Controller) -> None:
 
 def _stop(c: Controller) -> None:
     c.session.playing = False
-    if c.selection.picked is None:
-        c.selection.select((0.5, 0.5))
+
+
+def _show_alone(c: Controller) -> None:
+    """Let nothing cover the few pixels of figure4."""
+    c.selection.clear()
+    c.session.set_draw(view=View.COLOR)
 
 
 def _play(c: Controller) -> None:
@@ -224,19 +251,13 @@ def _how_to_toggle(c: Controller) -> str:
     return f"Press {{Shadow culling}} {'twice' if method.culls else 'once more to cull again'}. {_THE_SAME}"
 
 
-def _how_often(c: Controller) -> str:
-    """Say how many times as many pixels the triangle of figure4 covers as when it was last examined."""
-    frame = c.frame
-    if frame is None or not is_open(c, FIGURE_4):
-        return ""
-    now, before = int(frame.pixel_count[0]), int(frame.highest_count[0])
-    return f"Now it covers {now:,} pixels, and {before:,} when it was examined last: {now / max(before, 1):.1f} times."
-
-
 def _rule_of_four(c: Controller) -> str:
+    """Say how many times as many pixels the triangle of figure4 covers as when it was last examined."""
+    now, before = (int(c.frame.pixel_count[0]), int(c.frame.highest_count[0])) if c.frame is not None else (0, 0)
     return (
         "A primitive that covers more than 4 times the pixels it had when it was examined last is examined anew "
-        f"(§2.6). Press {{Play}} to come near: the shadow appears. {_how_often(c)}"
+        "(§2.6). Press {Play} to come near: the shadow appears. Now it covers "
+        f"{now:,} pixels, and {before:,} when it was examined last: {now / max(before, 1):.1f} times."
     )
 
 
@@ -271,7 +292,7 @@ STEPS = (
             Part(lambda c: c.session.scene is not None and len(c.session.scene.objects) > 1,
                  open_scene(default_scene()), True),
             Part(_shows(View.MOVING_SHADOW), _show(View.MOVING_SHADOW)),
-            Part(lambda c: c.session.playing, _play),
+            Part(_shadows_moved, _play),
         ),
     ),
     Step(
@@ -286,8 +307,17 @@ STEPS = (
             Part(_shows_wrong, _show(View.DIFFERENCE)),
         ),
         still=True,
+        in_figure_4=True,
     ),
-    Step("The rule of four", _rule_of_four, (Part(_at_least(EXAMINED), _play),)),
+    Step(
+        "The rule of four", _rule_of_four,
+        (
+            Part(lambda c: c.session.playing or _at_least(EXAMINED)(c), _play),
+            Part(_shows(View.COLOR), _show_alone, True),
+            Part(_at_least(EXAMINED), _play),
+        ),
+        in_figure_4=True,
+    ),
     Step(
         "What next",
         "Fly with {Fly forward}, {Fly left}, {Fly back} and {Fly right}, and look around by dragging. Open BART's "

@@ -1,4 +1,3 @@
 """What the user looks at and has chosen, as plain values: scene, camera, time, settings, view, history, messages.
 
-Nothing here starts a thread, draws or traces.
-"""
+Nothing here starts a thread, draws or traces."""

@@ -2,8 +2,7 @@
 
 msgspec reads the types of dataclasses, tuples, enums and sets, and says in one line what does not fit.  What a stored
 value lacks keeps what it has in the value that it is read onto, and what it has too much is ignored, so that other
-versions' files can be read.
-"""
+versions' files can be read."""
 
 from __future__ import annotations
 

@@ -3,8 +3,7 @@
 Two ways to move, as in every modelling program: *fly* (walk along the view, look around in place)
 and *orbit* (turn around a point, which stays where it is on the screen).  A camera is turned as a
 rigid body, direction and up together, about the world's up and its own right hand; so a roll that
-an animated camera brought along is kept, and looking straight up or down is avoided.
-"""
+an animated camera brought along is kept, and looking straight up or down is avoided."""
 
 from __future__ import annotations
 

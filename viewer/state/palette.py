@@ -1,7 +1,6 @@
 """The colours of modes, certificates and fates, and what each stands for: declared once, for all that shows them.
 
-The colours of modes are those of Okabe and Ito, which every kind of colour-blindness tells apart, and greys do too.
-"""
+The colours of modes are those of Okabe and Ito, which every kind of colour-blindness tells apart, and greys do too."""
 
 from __future__ import annotations
 

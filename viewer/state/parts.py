@@ -1,7 +1,6 @@
 """The things of a scene (`tracer.scene.things`) by number, and what each primitive is, of a scene as it was read.
 
-All is kept as arrays over primitives, as a scene may have millions of these.
-"""
+All is kept as arrays over primitives, as a scene may have millions of these."""
 
 from __future__ import annotations
 

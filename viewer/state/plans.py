@@ -1,7 +1,6 @@
 """What is planned to be traced: an experiment over a path, a zoom test, a film, a hunt, a picture to be saved.
 
-Fields that are settings of the tracer go by their declarations there.
-"""
+Fields that are settings of the tracer go by their declarations there."""
 
 from __future__ import annotations
 

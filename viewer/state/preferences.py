@@ -2,8 +2,7 @@
 folder (`SHADOWCULL_CONFIG_DIR` names another).
 
 Reading forgives: a value that is missing, of the wrong kind or out of range keeps its default, and a file that is no
-JSON is kept under another name and reported.
-"""
+JSON is kept under another name and reported."""
 
 from __future__ import annotations
 

@@ -3,8 +3,7 @@
 What became of the shadow rays are the frame's own counters.  Steps and time, which need a frame by `none` to be
 compared with, come from frames that were traced in turn (`viewer.services.beside`): a single frame's time says little,
 as whatever else the machine does is in it.  Frames in turn share that, so that the ratio of two neighbours varies less
-than either, and the median of many ratios less still.
-"""
+than either, and the median of many ratios less still."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Tables of a scene's objects and of its primitives, with what the newest frame found out about them.
 
 A table is a column of numbers, or of codes for words, for each thing that is told; never an object for a row, as there
-may be millions.
-"""
+may be millions."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 from viewer.state.draw_options import DrawOptions
 from viewer.state.pixels import FIT
-from viewer.state.view_state import ViewState
+from viewer.state.view_state import Pace, ViewState
 
 NOWHERE = Camera((0, 0, 5), (0, 0, -1))
 """Where the picture is taken from while no scene is open."""
@@ -34,6 +34,7 @@ class Session:
     playing: bool = False
     counting: bool = False
     _on_path: tuple[Scene, float, Camera] | None = field(default=None, init=False, repr=False, compare=False)
+    _fixed: tuple[Pace, Pace] | None = field(default=None, init=False, compare=False)  # of `fix_size`, and before it
 
     # --- the state -------------------------------------------------------------------------------
 
@@ -68,6 +69,20 @@ class Session:
     def set_pace(self, **pace: Any) -> None:
         """Change how the window traces."""
         self.change(pace=replace(self.state.pace, **pace))
+
+    def fix_size(self, width: int, height: int, **pace: Any) -> None:
+        """Trace in a size that the user has not chosen, until `give_size_back`, or until another scene is opened."""
+        before = self.state.pace
+        if self._fixed is not None and self._fixed[0] == before:
+            before = self._fixed[1]
+        self.set_pace(fixed_size=True, width=width, height=height, **pace)
+        self._fixed = self.state.pace, before
+
+    def give_size_back(self) -> None:
+        """Trace again as the user has chosen, unless another choice was made meanwhile."""
+        if self._fixed is not None and self._fixed[0] == self.state.pace:
+            self.change(pace=self._fixed[1])
+        self._fixed = None
 
     def restore(self, state: ViewState) -> None:
         """Go back to a state of the scene that is open; what belongs to this machine stays as it is."""
@@ -115,6 +130,7 @@ class Session:
         if self.scene is not None and scene.path != self.scene.path:
             self.set_settings(lamp_radius=None)
             self.set_draw(zoom=FIT)
+            self.give_size_back()
         self.scene = scene
         self.edited, self.light_to_come = edited(scene, NO_EDITS), None
         path = str(Path(scene.path).absolute())

@@ -1,7 +1,6 @@
 """The names of counters and phases wherever people read them, in the window and on the command line alike.
 
-JSON and CSV have names of their own, which do not change.
-"""
+JSON and CSV have names of their own, which do not change."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """What verifying has found in a frame, in words: said alike by legend, panels, status bar and command line.
 
 All of it is of all samples of all pixels that are shaded (`tracer.statistics.WrongCounts`), while other counters are of
-the first sample: numbers that grow as samples are added say of how many they are.
-"""
+the first sample: numbers that grow as samples are added say of how many they are."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """The views by their names, and what is declared of each.
 
 A view is one file in `viewer/views`, which has its name: it is found there when it is first asked about, so that what
-lies below the views can ask for a label without knowing how anything is drawn.
-"""
+lies below the views can ask for a label without knowing how anything is drawn."""
 
 from __future__ import annotations
 

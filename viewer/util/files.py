@@ -1,8 +1,7 @@
 """Files that are whole or absent: checked to be writable before the work, never seen half-written.
 
 A file that is still being written is hidden beside what it becomes.  Its name tells which process writes it, so that
-whoever writes in the folder next removes what killed writers have left.
-"""
+whoever writes in the folder next removes what killed writers have left."""
 
 from __future__ import annotations
 
@@ -21,8 +20,7 @@ from typing import BinaryIO
 def check_writable(path: Path) -> None:
     """Raise OSError, in one line, if a file of this path could not be written.
 
-    A file is created beside it and removed again: permissions alone say too little of read-only or full disks.
-    """
+    A file is created beside it and removed again: permissions alone say too little of read-only or full disks."""
     if str(path) == "-":
         raise OSError("-: results are not written to standard output; give the name of a file")
     target = _target(path)

@@ -1,8 +1,7 @@
 """Where shaders and scenes are, in a source tree and in an installed wheel alike.
 
 In the source tree `shaders/` and `assets/` lie at the top, beside the packages; a wheel carries
-the same two folders inside the package, under `viewer/data/`.
-"""
+the same two folders inside the package, under `viewer/data/`."""
 
 from __future__ import annotations
 

@@ -2,8 +2,7 @@
 
 `DISPLAY` may be left over from a session that has ended, or be set in a container that has no X
 server; a window library then fails deep inside C.  So the answer is yes only where a server
-accepts a connection.
-"""
+accepts a connection."""
 
 from __future__ import annotations
 

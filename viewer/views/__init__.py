@@ -1,7 +1,6 @@
 """What can be seen of a frame: a view is one file here, which has the name of the view.
 
-The functions below are all that others need: they look the view up by its name.
-"""
+The functions below are all that others need: they look the view up by its name."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Kinds of views: flat colours for classes, modes among them, and counts on the colour map.
 
 The file of such a view says which classes there are, or what is counted, and what each pixel has of it.  Its pixels,
-the rows of its legend, its values and its words follow from that.
-"""
+the rows of its legend, its values and its words follow from that."""
 
 from __future__ import annotations
 

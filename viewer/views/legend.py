@@ -1,8 +1,7 @@
 """What a legend consists of: the colours of a view, what each stands for, and how much of the frame has it.
 
 The window draws it into the picture, or beside it, and a saved picture may carry it; `lay_out` says where its
-parts lie: boxes of colour and lines of text, in the unit in which `measure` gives the width of a text.
-"""
+parts lie: boxes of colour and lines of text, in the unit in which `measure` gives the width of a text."""
 
 from __future__ import annotations
 

@@ -2,8 +2,7 @@
 
 Two kernels go over a picture once each, on one core and without the GIL: one draws the colours of a table, by class or
 by a number on the colour map, and the other any colours.  Both end the same way: with some of the picture's light and
-shade, the background where nothing is hit, and lines between cells and between primitives.
-"""
+shade, the background where nothing is hit, and lines between cells and between primitives."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """A slice through an acceleration structure that is built where rays arrive.
 
 It is drawn through everything: wherever a ray of the picture passes the tree is built, so what waits is what lies
-behind something, and would never be seen if that hid the slice.
-"""
+behind something, and would never be seen if that hid the slice."""
 
 from __future__ import annotations
 

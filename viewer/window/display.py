@@ -1,8 +1,7 @@
 """From a frame to a picture on the screen: the view's pixels as a texture, which ImGui shows as an image.
 
 `viewer.views` makes the pixels, on one core; changing the view, the light or the selection never traces.  What is no
-longer referred to here is freed on the GPU by `graphics.draw`.
-"""
+longer referred to here is freed on the GPU by `graphics.draw`."""
 
 from __future__ import annotations
 

@@ -2,8 +2,7 @@
 
 An exception that left a callback would end Hello ImGui's loop, and with it the program.  Here it becomes a fault in
 the log and a notice, and ImGui's stacks are put back to where they were before the part began.  A panel that failed is
-not shown again until the user says so: its place says what went wrong.
-"""
+not shown again until the user says so: its place says what went wrong."""
 
 from __future__ import annotations
 

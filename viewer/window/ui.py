@@ -1,7 +1,6 @@
 """The state of the interface itself: what is open, what was asked for, and what the pointer holds.
 
-Panels and commands share it; what they do to the scene goes through the controller.
-"""
+Panels and commands share it; what they do to the scene goes through the controller."""
 
 from __future__ import annotations
 

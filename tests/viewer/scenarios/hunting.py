@@ -68,6 +68,7 @@ def _to_a_find(d: Driver) -> None:
     assert c.runs.hunt.whole and found.finds and found.frames == LAST // STEP + 5
     d.change(samples=4)
     d.click("//Hunt/**/1##0").settle()
+    assert (c.frame.width, c.frame.height) == (96, 96)
     find, picked = found.finds[0], c.selection.picked
     assert (picked.x, picked.y) == (find.x, find.y) and wrong_at(c.frame, find.x, find.y) > 0
     assert tuple(c.frame.color[find.y, find.x].tolist()) == find.color
@@ -84,4 +85,4 @@ def _to_a_find(d: Driver) -> None:
     d.wait(lambda: c.inspector.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.inspector.tree.rays)
     d.show_panel("Hunt").press("RightArrow").settle()
-    assert c.frame.settings.samples == 4, "having moved, it gets its samples"
+    d.wait(lambda: c.frame.settings.samples == 4 and c.frame.width > 96, "samples and size after a movement", 30.0)

@@ -45,11 +45,8 @@ def _bookmarks(d: Driver) -> None:
 def _texts(d: Driver) -> None:
     """The clipboard is one of the test's own: that of the screen is shared by all windows that are tested."""
     clipboard = [""]
-    own = {
-        "set_clipboard_text": lambda text: clipboard.__setitem__(0, text),
-        "get_clipboard_text": lambda: clipboard[0],
-    }
-    with mock.patch.multiple(imgui, **own):
+    copy, paste = lambda text: clipboard.__setitem__(0, text), lambda: clipboard[0]
+    with mock.patch.multiple(imgui, set_clipboard_text=copy, get_clipboard_text=paste):
         d.settle().press("Ctrl+Shift+C")
         camera = d.c.session.camera
         assert json.loads(clipboard[0]) == camera.to_json()

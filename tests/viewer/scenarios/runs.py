@@ -237,4 +237,6 @@ def figures(d: Driver) -> None:
     d.choose("Run/Figure 3").wait(lambda: d.c.session.draw.view is View.OCCLUSION, "Figure 3", 60.0).settle()
     hidden = OcclusionMode(int(occlusion_mode(d.c.frame.modes)[4]))
     assert hidden is OcclusionMode.FULLY_RENDERED, "the card that is hidden on its left is taken for whole"
+    d.open(embedded_scenes()["figure4"])
+    assert not d.c.session.state.pace.fixed_size, "another scene has the window's size"
     d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 1, "frames")

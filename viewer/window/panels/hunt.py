@@ -77,4 +77,4 @@ def _details(ui: Ui, number: int, find: Counterexample, scene: Scene) -> None:
     for sentence in (*counterexample.in_words(find, scene), counterexample.in_its_frame(find)):
         paragraph(in_window_style(sentence))
     if ui.controller.scheduler.is_frozen:
-        paragraph("The picture stays at 1 sample a pixel, as it was found, until you move.", QUIET)
+        paragraph("The picture stays as it was found, in its size and at 1 sample a pixel, until you move.", QUIET)

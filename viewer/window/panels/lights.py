@@ -1,7 +1,6 @@
 """The lights of the scene: as a list, to choose one from, and what lamps are made of them.
 
-A scene may have thousands: a list draws the rows that are seen, and finds lights by words of their names.
-"""
+A scene may have thousands: a list draws the rows that are seen, and finds lights by words of their names."""
 
 from __future__ import annotations
 

@@ -1,9 +1,7 @@
 """The traced picture in its window, and the pointer on it.
 
-The picture keeps its aspect inside whatever room its window has; that room, in framebuffer
-pixels, is the resolution at which the next frame is traced.  The pointer moves the camera only
-when it was pressed on the picture itself.
-"""
+The picture keeps its aspect inside whatever room its window has; that room, in framebuffer pixels, is the resolution at
+which the next frame is traced.  The pointer moves the camera only when it was pressed on the picture itself."""
 
 from __future__ import annotations
 

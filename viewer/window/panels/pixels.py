@@ -1,6 +1,5 @@
 """Exact values: the picture itself is looked at closely, with the values of its pixels in them, and the panel says how
-those lie that are seen.
-"""
+those lie that are seen."""
 
 from __future__ import annotations
 
