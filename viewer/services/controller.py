@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from tracer.editing.edits import Edited
-from tracer.experiments.zoom import Step
 from tracer.frame import Frame
 from tracer.renderer import Renderer
 from viewer.services.beside import Baseline
@@ -240,14 +239,6 @@ class Controller:
             self.restore(state)
             if state.camera is not None:
                 self.motion.glide(state.camera, start)
-
-    def go_to_step(self, step: Step) -> None:
-        """Glide to where a step of the zoom test stood, at the test's time."""
-        test = self.runs.zoom_test
-        if test is not None and test.results is not None and self.runs.allows(test):
-            self.session.playing = False
-            self.session.change(time=test.results.time)
-            self.motion.glide(step.camera)
 
     def close(self, timeout: float = 30.0) -> bool:
         """Stop everything, finish writing files and save the preferences; false if something would not stop."""

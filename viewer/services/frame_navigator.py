@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from tracer.experiments.zoom import METHOD, Step
 from tracer.method import title_of
 from tracer.scene.model import Camera
 from viewer.output.commands import BUILT
@@ -36,7 +37,7 @@ class FrameNavigator:
         self._runs, self._undo, self._selection, self._notices = runs, undo, selection, notices
         self._restore, self._reset_modes = restore, reset_modes
         self._wanted: tuple[float, Camera, Point] | None = None
-        self._found_in: Pace | None = None  # what a counterexample is shown with
+        self._found_in: Pace | None = None  # what a counterexample, or a step of a zoom test, is shown with
 
     def go(self, number: int) -> None:
         """Go back to a frame by its number in the plots."""
@@ -46,7 +47,7 @@ class FrameNavigator:
         if record is None:
             self._notices.say(f"picture {number} is no longer kept: only the last {KEPT_FRAMES:,} are")
             return
-        self.go_to(record.state, f"picture {number}", record.size)
+        self.go_to(record.state, f"picture {number}")
         said = ": the same picture, bit for bit" if record.size == self._scheduler.inputs.full_size else ""
         said = ": modes are learnt anew" if self._session.state.depends_on_modes else said
         said = f", though {BUILT}" if record.state.draw.view is View.TREE else said
@@ -58,9 +59,8 @@ class FrameNavigator:
         if not self._runs.allows(run):
             return
         settings = replace(run.settings, method=run.shown, samples=session.settings.samples)
-        state = replace(session.state, time=run.times[number], camera=None, settings=settings)
         name = f"frame {number} of the experiment"
-        self.go_to(state, name, (settings.width, settings.height))
+        self.go_to(replace(session.state, time=run.times[number], camera=None, settings=settings), name)
         self._notices.say(f"{name}, by {title_of(run.shown)}")
 
     def go_to_find(self, number: int) -> None:
@@ -71,16 +71,26 @@ class FrameNavigator:
             return
         runs.chosen_find, find, settings = number, runs.hunt.results.finds[number], runs.hunt.settings
         size = settings.width, settings.height
-        settings = replace(settings, samples=self._session.settings.samples)
         state = replace(self._session.state, time=find.time, camera=find.seen_camera, settings=settings)
         point = (find.x + 0.5) / size[0], (find.y + 0.5) / size[1]
         warmup = tuple((one.time, one.camera or scene.camera_at(one.time)) for one in find.before)
         zoom = around(*point, size[0] / Crop.around((find.x, find.y), size).width)
-        self.go_to(state.with_draw(light=find.light), f"counterexample {number + 1}", size, point, zoom, warmup)
+        self.go_to(state.with_draw(light=find.light), f"counterexample {number + 1}", point, zoom, warmup)
+
+    def go_to_step(self, factor: float, step: Step) -> None:
+        """Fly to a step of the zoom test: forget all modes, and trace the steps before it, so that it is as it was."""
+        test = self._runs.zoom_test
+        if test is None or test.results is None or not self._runs.allows(test):
+            return
+        time, settings = test.results.time, replace(test.settings, method=METHOD, zoom_factor=factor, verify=True)
+        state = replace(self._session.state, time=time, camera=step.camera, settings=settings)
+        steps = next(one.steps for one in test.results.approaches if one.factor == factor)
+        warmup = tuple((time, one.camera) for one in steps[: step.number])
+        self.go_to(state, f"step {step.number} of the zoom test", (0.5, 0.5), None, warmup)  # it looks at the primitive
 
     def go_to(
-        self, state: ViewState, name: str, size: tuple[int, int], point: Point | None = None,
-        zoom: Zoom | None = None, warmup: Warmup | None = None,
+        self, state: ViewState, name: str, point: Point | None = None, zoom: Zoom | None = None,
+        warmup: Warmup | None = None,
     ) -> None:  # fmt: skip
         """Restore a state, and select a point of the picture once that has come; `zoom` is how closely it is looked at
         then.
@@ -88,6 +98,8 @@ class FrameNavigator:
         With `warmup` frames, all modes are forgotten and these frames, by time and camera, are traced before the
         picture, which then has one sample a pixel and is not refined: it stays as it was found until something is
         done."""
+        if warmup is not None:
+            state = state.with_settings(samples=self._session.settings.samples)
         self._undo.begin_step(f"going to {name}", with_time=True)
         self._restore(state)
         if zoom is not None:
@@ -96,6 +108,7 @@ class FrameNavigator:
         if warmup is not None or self._session.state.depends_on_modes:
             self._reset_modes()
         if warmup is not None:
+            size = state.settings.width, state.settings.height
             if size != self._scheduler.inputs.full_size:
                 self._session.fix_size(*size)
                 self._found_in = self._session.state.pace

@@ -180,10 +180,11 @@ class SceneTable:
             return
         light, last = self._session.draw.light, self._source
         if traced is not None and traced.complete:
-            same = last is not None and last.now is now and last.light == light
-            # Further samples of a picture count nothing.
-            if last is None or not same or not (self.pointed_at or is_same_picture(last.frame, traced.frame)):
-                self._source = Source(now, traced.frame, light)
+            frame, same = traced.frame, last is not None and last.now is now and last.light == light
+            # Further samples of a picture count wrong answers only.
+            stays = self.pointed_at or (last and is_same_picture(last.frame, frame) and last.frame.wrong is frame.wrong)
+            if not (same and stays):
+                self._source = Source(now, frame, light)
         if self._source is not None:
             self._make(self._source)
 

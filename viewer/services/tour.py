@@ -162,13 +162,12 @@ def _shows_wrong(c: Controller) -> bool:
     return c.session.draw.view is View.DIFFERENCE and c.frame is not None and verified.is_wrong(c.frame.statistics)
 
 
-def _shadowed(c: Controller) -> int | None:
-    """Return a light in whose shadow the pixel is that was clicked: that of another primitive."""
+def _is_shadowed(c: Controller) -> bool:
+    """Return whether the pixel that was clicked is in the shadow of another primitive."""
     picked, answer = c.selection.picked, c.inspector.why
     if picked is None or answer is None:
-        return None
-    by_others = (one.light for one in answer.reasons if not one.lit and one.blocker not in (-1, picked.primitive))
-    return next(by_others, None)
+        return False
+    return any(not one.lit and one.blocker not in (-1, picked.primitive) for one in answer.reasons)
 
 
 def _at_least(number: int) -> Condition:
@@ -198,11 +197,8 @@ def _show(view: View) -> Act:
 
 
 def _click_a_shadow(c: Controller) -> None:
-    """Click one place after another, and choose the light in whose shadow one is."""
-    light = _shadowed(c)
-    if light is not None:
-        c.settings.set_light(light)
-    elif c.selection.picked is None or c.inspector.why is not None:
+    """Click one place after another, until one is in shadow."""
+    if not _is_shadowed(c) and (c.selection.picked is None or c.inspector.why is not None):
         c.session.set_draw(view=View.COLOR)
         c.selection.select(next(_PLACES))
 
@@ -286,7 +282,7 @@ STEPS = (
         "Why, for one pixel",
         "Click a dark spot in the picture. The Inspector says why its shadow ray is culled or traced, and lines show "
         "the shadow rays.",
-        (Part(lambda c: _shadowed(c) is not None, _click_a_shadow),),
+        (Part(_is_shadowed, _click_a_shadow),),
     ),
     Step(
         "Shadows that move",

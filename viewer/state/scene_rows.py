@@ -46,7 +46,7 @@ _AT_PIXELS = "at the pixels that show it, of all bounces"
 _DUE = Column("due", "Due", f"shadow rays that are due {_AT_PIXELS}")
 _SAVED = Column("saved", "Untraced", f"shadow rays {_AT_PIXELS} that were not traced through the whole scene")
 _SHARE = Column("share", "Share", "share of the due shadow rays that is untraced, in per cent")
-_WRONG = Column("wrong", "Wrong", "wrong shadow answers at its pixels; known while frames are verified")
+_WRONG = Column("wrong", "Wrong", "wrong shadow answers at its pixels, in all samples; known while frames are verified")
 _PIXELS = Column("pixels", "Pixels", "pixels that it covers now")
 COLUMNS: dict[Level, tuple[Column, ...]] = {
     Level.PRIMITIVES: (

@@ -56,8 +56,6 @@ def _occluded(d: Driver) -> None:
     """What hides it is named and outlined, and the pixel at which it does is a link, as the thing is."""
     inside = _of(d, PARTLY) & ~_at_border(d)
     one = _click(d, inside, _by_something(d))
-    d.c.settings.set_light(one.light)
-    d.frames(3)
     by, words = d.c.inspector.why.coverage.occluded, Words(d.c.session.scene, d.c.inspector.why)
     hider = _named(d, by.primitive)
     text = plain(words.reason(one))
@@ -110,13 +108,11 @@ def _rays(d: Driver) -> None:
     assert (tree.x, tree.y) == c.selection.pixel and tree.due > 0
     d.frames(3)
     drawn, everything = d.lines_drawn(), len(rays.rows(d.ui))
-
     # Filters hide rows and lines.
     d.click("//Inspector/wrong")
     assert state.shown.shown is RaySubset.WRONG and len(rays.rows(d.ui)) < everything and d.lines_drawn() < drawn
     d.click("//Inspector/all")
     assert len(rays.rows(d.ui)) == everything
-
     # A row that the pointer is on is picked out; a click selects it.
     row = next(row for _, row in rays.rows(d.ui) if len(row.places) == 1 and "traced" in row.text)
     d.hover(f"//Inspector/**/{row.key}/##row")

@@ -115,7 +115,7 @@ def test_a_frame_of_other_edits_comes_back_with_them(desk: Desk) -> None:
     assert not np.array_equal(whole, hidden)
     for to, picture, edits in ((number, whole, NO_EDITS), (other, hidden, without_ball)):
         record = c.history.records[to]
-        c.navigator.go_to(record.state, "a picture", record.size, (0.5, 0.45))
+        c.navigator.go_to(record.state, "a picture", (0.5, 0.45))
         desk.rest()
         assert np.array_equal(c.frame.color, picture) and c.session.edits == edits
         here = c.selection.at((0.5, 0.45))

@@ -17,7 +17,7 @@ from tracer.inspect.why_in_words import Link
 from viewer.output.ray_rows import RayFilter
 from viewer.services import inspector as module
 from viewer.state import navigation
-from viewer.window.panels.inspector import summary, unanswered, wrong_beyond
+from viewer.window.panels.inspector import summary, telling, unanswered, wrong_beyond
 from viewer.window.panels.links import go_to
 from viewer.window.panels.rays import ray_lines
 from viewer.window.ui import Ui
@@ -113,6 +113,8 @@ def test_lights_are_summed_up_by_the_samples_that_arrive():
     assert summary([*lights, Reason(4, Rule.FACES_AWAY, Fate.FACES_AWAY)]) == (
         "1 lit, 1 in part, 2 in shadow, 1 facing away"
     )
+    wrong, culled = Reason(5, Rule.OFF, Fate.TRACED, lit=1, wrong=1), Reason(6, Rule.FULL_SHADOW, Fate.CULLED)
+    assert [one.light for one in sorted([lights[0], lights[3], culled, wrong], key=telling)] == [5, 6, 0, 0]
 
 
 def test_a_failed_answer_stops_nothing_a_failed_edit_leaves_answers_and_a_failed_frame_stops_what_plays(

@@ -56,6 +56,8 @@ def test_rows_stay_as_they_are_under_the_pointer(desk: Desk, table: SceneTable) 
     assert known(desk).rows.tolist() == sorted(before.rows.tolist(), reverse=True), "a click counts at once"
     table.pointed_at = False
     desk.until(lambda: table.listing.source.frame.camera == ELSEWHERE)
+    desk.c.settings.change(samples=3, verify=True)
+    desk.until(lambda: table.listing.source.frame.settings.samples == 3)  # wrong answers are counted in all samples
 
 
 def test_filters_that_are_not_understood_leave_the_rows(desk: Desk, table: SceneTable) -> None:

@@ -61,11 +61,11 @@ def test_a_step_can_be_gone_to_in_its_own_scene_while_nothing_runs(figure4: Desk
     step, camera = desk.runs.zoom_test.results.approaches[0].steps[-1], desk.c.session.camera
     desk.runs.experiment_plan.frames = 5000
     desk.runs.start_experiment()
-    desk.c.go_to_step(step)
+    desk.c.navigator.go_to_step(4.0, step)
     assert desk.said.startswith("the experiment is still under way") and desk.c.session.camera == camera
     desk.open(embedded_scenes()["figure3"])
     camera = desk.c.session.camera
-    desk.c.go_to_step(step)
+    desk.c.navigator.go_to_step(4.0, step)
     desk.rest()
     assert desk.c.session.camera == camera and "figure4.aff" in desk.said
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from imgui_bundle import ImVec2, imgui
@@ -18,32 +19,17 @@ from tracer.inspect.mode_origins import Origin
 from tracer.inspect.reasons import Reason, Rule, Why
 from tracer.inspect.why_in_words import Link, Words, plain
 from tracer.scene.model import Material, Scene
-from viewer.services.inspector import with_origins
+from viewer.services.inspector import Pixel, with_origins
 from viewer.state.palette import FATES, OCCLUSION, SHADOW, Class
 from viewer.state.picking import Pick, shadow_mode_of, unit_of, wrong_at
 from viewer.state.views import has_modes_of_cells
-from viewer.util.numbers import several
+from viewer.util.numbers import count, several
 from viewer.window.panels import lights, rays
 from viewer.window.panels.links import Pointed, sentence
 from viewer.window.panels.status import traced_before_an_answer
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    ERROR,
-    QUIET,
-    clipped,
-    count,
-    em,
-    fitted,
-    heading,
-    paragraph,
-    properties,
-    swatch,
-    tooltip,
-    tooltip_at,
-    value,
-)
+from viewer.window.widgets import ERROR, QUIET, clipped, fitted, heading, paragraph, properties, swatch, tooltip, value
 
-Pixel = tuple[int, int]
 _MOST_LIGHTS = 40  # that are listed at once
 
 
@@ -89,7 +75,7 @@ def _details(ui: Ui, pick: Pick, at: Pixel | None) -> None:
         if wrong:
             of = f"in its {frame.settings.samples} samples, " if frame.settings.samples > 1 else ""
             paragraph(f"{several(wrong, 'wrong shadow answer')} at this pixel, {of}at all bounces.", ERROR)
-        _why(ui, pick, unit, frame, scene)  # first, as it is what a click asks
+        _why(ui, pick, unit, frame, scene, wrong or 0)  # first, as it is what a click asks
         if frame.settings.keeps_modes:
             heading("Modes of its cell" if has_modes_of_cells(frame) else "Modes")
             _modes(ui, unit, frame, scene)
@@ -125,10 +111,18 @@ def _describe(m: Material) -> str:
     return text + (f", transmission {m.transmission:.3g}, index {m.ior:.3g}" if m.transmission else "")
 
 
-# --- why: sentences for the chosen light, a line for each other one ------------------------------------
+# --- why: sentences for one light, a line for each other one -------------------------------------------
 
 
-def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene) -> None:
+@dataclass
+class FirstLight:
+    """The light of the views `before` the pixel `of` was clicked; -1 once a light is chosen in the panel."""
+
+    of: Pick | None = None
+    before: int = 0
+
+
+def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene, wrong: int) -> None:
     """The sentences, the chosen light's first; nothing but what the answer waits for while they are not known."""
     found = ui.controller.inspector.why
     if found is None:
@@ -140,9 +134,16 @@ def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene) -> None:
     words = Words(scene, found)
     if not found.reasons:
         paragraph("The scene has no lights.", QUIET)
-    number = min(ui.controller.session.draw.light, len(found.reasons) - 1)
-    chosen = found.reasons[number] if found.reasons else None
+    if beyond := wrong_beyond(found):
+        paragraph(f"{several(beyond, 'wrong answer')} at what is reflected here or seen through it.", ERROR)
+        if imgui.small_button("List its rays"):
+            rays.show_rays(ui)
+    elif wrong and frame.settings.samples > 1 and not any(one.wrong for one in found.reasons):
+        paragraph("Below is the first sample: it is right. At 1 sample a pixel each wrong pixel is explained.", ERROR)
+        if imgui.small_button("Trace 1 sample a pixel"):
+            ui.controller.settings.change(samples=1)
     told = False  # what hides the primitive
+    chosen = _first_light(ui, found)
     if chosen is not None:
         _name(ui, chosen, chosen=True)
         sentence(ui, words.reason(chosen), "reason")
@@ -150,27 +151,41 @@ def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene) -> None:
             sentence(ui, said, "answer", ERROR if chosen.wrong else QUIET)
         told = (chosen.instead or chosen).rule in (Rule.PARTLY_OCCLUDED, Rule.NOT_SEEN_WHOLE, Rule.EXAMINED_ANEW)
     if found.coverage is not None:
-        imgui.dummy(ImVec2(0.0, em(0.1)))
         sentence(ui, words.coverage(found.coverage, told), "coverage")
-    beyond = wrong_beyond(found)
-    if beyond:
-        answers = several(beyond, "shadow answer")
-        paragraph(f"Also wrong: {answers} at what is reflected here or seen through it; Rays lists them.", ERROR)
-    _other_lights(ui, words, found, number, scene.light_positions(frame.time), pick.point)
+    _other_lights(ui, words, found, chosen, scene.light_positions(frame.time), pick.point)
+
+
+def _first_light(ui: Ui, found: Why) -> Reason | None:
+    """The light that is told in full; None where the scene has none."""
+    state, draw, picked = ui.state(FirstLight), ui.controller.session.draw, ui.controller.selection.picked
+    if picked is not state.of:
+        state.of, state.before = picked, draw.light
+    if draw.view.of_light or draw.light != state.before:
+        return found.reasons[min(draw.light, len(found.reasons) - 1)] if found.reasons else None
+    return min(found.reasons, key=telling, default=None)
+
+
+def telling(one: Reason) -> tuple[bool, ...]:
+    """Sort by this: wrong answers come first, then culled rays, then others that are blocked, then light."""
+    due = one.fate is not Fate.FACES_AWAY
+    blocked = due and one.lit < one.rays
+    return not one.wrong, not (blocked and one.fate is Fate.CULLED), not blocked, not due
 
 
 def _other_lights(
-    ui: Ui, words: Words, found: Why, chosen: int, places: NDArray, point: Sequence[float] | None
+    ui: Ui, words: Words, found: Why, chosen: Reason | None, places: NDArray, point: Sequence[float] | None
 ) -> None:
-    """A line for each; of many those that are looked for, wrong answers and the nearest first."""
+    """A line for each, the most telling first; of many those that are looked for, wrong and near ones first."""
     many = len(found.reasons) > lights.FEW
     if many:
         paragraph(summary(found.reasons), QUIET)
     wanted = [found.reasons[light] for light in lights.found(ui, "inspector") if light < len(found.reasons)]
-    if many:
-        wanted.sort(key=lambda one: (not one.wrong, math.dist(places[one.light], point) if point is not None else 0.0))
+    if many and point is not None:
+        wanted.sort(key=lambda one: (not one.wrong, math.dist(places[one.light], point)))
+    else:
+        wanted.sort(key=telling)
     for one in wanted[:_MOST_LIGHTS]:
-        if one.light != chosen:
+        if one is not chosen:
             _line(ui, words, one)
     if len(wanted) > _MOST_LIGHTS:
         paragraph(f"the nearest {_MOST_LIGHTS} are listed", QUIET)
@@ -205,14 +220,14 @@ def wrong_beyond(found: Why) -> int:
 
 
 def _name(ui: Ui, one: Reason, chosen: bool) -> ImVec2:
-    """A light's colour and name, and where that ends; resting on it picks it out over the picture, a click chooses
-    it."""
+    """A light's colour and name, and where that ends; the pointer picks it out over the picture, a click chooses it."""
     imgui.push_id(one.light)
     swatch(FATES[one.fate].color)
     name, start = ui.light_name(one.light), imgui.get_cursor_screen_pos()
     clicked, _ = imgui.selectable(f"{name}##light", chosen, int(imgui.SelectableFlags_.allow_overlap))
     if clicked:
         ui.controller.settings.set_light(one.light)
+        ui.state(FirstLight).before = -1
     if imgui.is_item_hovered():
         ui.state(Pointed).light = one.light
     imgui.pop_id()
@@ -223,10 +238,9 @@ def _line(ui: Ui, words: Words, one: Reason) -> None:
     """Another light, in one line."""
     end = _name(ui, one, chosen=False)
     text = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
-    if imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
-        tooltip_at(f"{ui.light_name(one.light)}: {FATES[one.fate].name}\n\n{text}\n\nClick to choose this light.")
+    tooltip(f"{ui.light_name(one.light)}: {FATES[one.fate].name}\n\n{text}\n\nClick to choose this light.")
     below = imgui.get_cursor_screen_pos()
-    imgui.set_cursor_screen_pos(ImVec2(end.x + em(0.5), end.y))
+    imgui.set_cursor_screen_pos(ImVec2(end.x + imgui.get_style().item_spacing.x, end.y))
     imgui.text_colored(ERROR if one.wrong else QUIET, fitted(text, imgui.get_content_region_avail().x))
     imgui.set_cursor_screen_pos(below)
 
@@ -253,8 +267,7 @@ def _modes(ui: Ui, unit: int, frame: Frame, scene: Scene) -> None:
                 if origins is not None and light < len(origins.lights):
                     _origin(ui, origins.lights[light], light)
         imgui.end_table()
-    uncovered = len(scene.lights) - covered
-    if uncovered:
+    if uncovered := len(scene.lights) - covered:
         paragraph(f"{uncovered} more {'light has' if uncovered == 1 else 'lights have'} no shadow mode", QUIET)
     found = ui.controller.inspector.why
     if found is not None:

@@ -20,23 +20,12 @@ from viewer.state.comparison import CompareMode
 from viewer.state.palette import HELD
 from viewer.state.picking import same_place
 from viewer.state.view_state import one_by_one
+from viewer.util.numbers import count
 from viewer.window.command import Command, Condition
 from viewer.window.panels import lights
 from viewer.window.panels.area import SHADE, Area
 from viewer.window.ui import Ui
-from viewer.window.widgets import (
-    QUIET,
-    checkbox,
-    clipped,
-    count,
-    em,
-    fitted,
-    heading,
-    paragraph,
-    tooltip,
-    tooltip_at,
-    wide_button,
-)  # fmt: skip
+from viewer.window.widgets import QUIET, checkbox, clipped, em, heading, paragraph, tooltip, tooltip_at, wide_button
 
 _ROWS = 12  # of the list of lights that are seen at once
 _MOST_MARKS = 64  # of lights: more would hide the picture
@@ -153,7 +142,7 @@ def _light(ui: Ui, edited: Edited, number: int, own_place: list[float]) -> None:
     names = max(em(2.5), min(imgui.calc_text_size(name).x + em(0.4), room - em(10.5)))
     start = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(fitted(name, names - em(0.4)))
+    clipped(name, room=names - em(0.4))
     imgui.same_line(start + names)
     imgui.set_next_item_width(-button - 1.0)
     speed = 0.001 * lights.diagonal(ui.controller.info.get("bounds"))  # units for each pixel of the pointer's way

@@ -74,7 +74,7 @@ def _films(ui: Ui, test: RecordedZoomTest, approaches: list[Approach]) -> None:
 def _thumbnail(ui: Ui, test: RecordedZoomTest, shot: Shot, step: Step, height: float) -> None:
     size = ImVec2(height * shot.width / shot.height, height)
     if imgui.invisible_button(f"{shot.factor:g} step {shot.number}##shot", size):
-        ui.controller.go_to_step(step)
+        ui.controller.navigator.go_to_step(shot.factor, step)
     if not imgui.is_item_visible():
         return
     start, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
@@ -130,7 +130,7 @@ def _plot(ui: Ui, test: RecordedZoomTest, approaches: list[Approach]) -> None:
         number = min(max(round(implot.get_plot_mouse_pos().x), 0), len(steps) - 1)
         _show_step(ui, test, approaches[0].factor, steps[number])
         if imgui.is_mouse_clicked(imgui.MouseButton_.left):
-            ui.controller.go_to_step(steps[number])
+            ui.controller.navigator.go_to_step(approaches[0].factor, steps[number])
     implot.end_plot()
 
 
@@ -161,8 +161,5 @@ def _table(ui: Ui, results: Results) -> None:
     rows = happenings(results)
     for approach in filter(lambda approach: approach.steps, results.approaches):
         paragraph(f"{verdict(approach)}.")
-
-    def go(number: int) -> None:
-        ui.controller.go_to_step(rows[number][1])
-
+    go = lambda number: ui.controller.navigator.go_to_step(*rows[number])  # noqa: E731
     results_table("steps", STEPS, rows, go, tip=lambda row: "\n".join(["fly there", *changes_in_words(row[1].changes)]))
