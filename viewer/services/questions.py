@@ -85,8 +85,8 @@ class Questions:
         if run is None or run.stopping:
             go_on()
             return
-        title = f"Stop the {run.name} and {goal}?"
-        self.question = Question(title, kept, (("Keep running", self.drop), *answers), run, at_end)
+        ways = ("Keep running", self.drop), *answers
+        self.question = Question(f"Stop the {run.name} and {goal}?", kept, ways, run, at_end)
         self._wake()
 
     def before_resetting(self, reset: Callable[[Collection[str]], None]) -> None:

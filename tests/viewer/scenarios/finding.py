@@ -95,7 +95,7 @@ def finding(d: Driver) -> None:
     table.open_part(part)
     assert len(_known(d).rows) == int(listing.table.columns["primitives"].numbers[part])
     _in_the_kitchen(d)
-    d.show_panel("Plots")
+    d.show_panel("Log")
     assert not table.visible and not c.session.counting
 
 
