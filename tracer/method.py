@@ -314,8 +314,8 @@ for _name, _title, _class, _can, _sentence in _TABLE:
 
 
 def title_of(method: str) -> str:
-    """Return what people read of a method, by its name."""
-    return Method.parse(method).title
+    """Return what people read of a method, by its name; of one that is not there, as in kept results, that name."""
+    return Method.parse(method).title if all(part in _KINDS for part in method.split("+")) else method
 
 
 def in_order(methods: Iterable[str]) -> list[str]:

@@ -46,7 +46,7 @@ def test_each_panel_shows_savings_their_average_and_their_maximum() -> None:
     for panel, work, told in zip(
         figure.axes,
         ("steps", "tests"),
-        ("paper, average 25.0%\nmost 60.0%, frame 6", "paper, average 16.2%\nmost 50.0%, frame 8"),
+        ("Paper, average 25.0%\nmost 60.0%, frame 6", "Paper, average 16.2%\nmost 50.0%, frame 8"),
         strict=True,
     ):
         saved = 1.0 - np.array(PAPER[work])
@@ -69,7 +69,7 @@ def test_wrong_answers_have_a_panel_where_there_are_any_and_the_title_says_what_
     assert len(figure.axes) == (3 if wrong else 2)
     if wrong:
         np.testing.assert_array_equal(figure.axes[-1].lines[0].get_ydata(), [0, 3, 1, 0])
-        assert named(figure.axes[-1]) == ["paper, 4 (0.100%)"]
+        assert named(figure.axes[-1]) == ["Paper, 4 (0.100%)"]
 
 
 def test_methods_differ_in_colour_and_dashes_and_their_names_are_on_the_page() -> None:
@@ -87,7 +87,7 @@ def test_one_frame_can_be_drawn_and_nothing_to_compare_is_said() -> None:
     one.frames = [5]
     one.methods = {m: {key: values[:1] for key, values in of.items()} for m, of in one.methods.items()}
     for panel in figures.savings_figure(one).axes:
-        assert named(panel) == ["paper, average 0.0%\nmost 0.0%, frame 5"]
+        assert named(panel) == ["Paper, average 0.0%\nmost 0.0%, frame 5"]
         assert panel.get_ylim()[0] <= 0.0 < panel.get_ylim()[1]
     del alone.methods["paper"]
     for nothing in (alone, experiment.Results("s", (1, 1), methods={"none": {}, "paper": {}})):

@@ -13,7 +13,7 @@ import tracer
 from tests.sweeps import ACCELERATORS
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import quad, quadrics, scene
-from tracer.methods.adaptive_policy import Payoff
+from tracer.methods.adaptive_policy import AdaptivePolicy
 from tracer.progressive import BEYOND, HALVES, LEVELS, Parts, after
 from tracer.scene.model import SPHERE, Camera, Cancelled, Material, Texture
 from tracer.shading.blocks import BAYER, EDGE, TURNS, all_blocks, lanes_of, make_planes, pixels_of
@@ -275,7 +275,7 @@ def test_what_decides_about_certificates_hears_of_each_picture_once(monkeypatch)
     world = scene(quad((-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)), lights=[(3, 4, 20)], camera=ABOVE)
     renderer = tracer.Renderer(world, replace(SETTINGS, method="auto", verify=False, record_work=False))
     told: list[float] = []
-    monkeypatch.setattr(Payoff, "finish", lambda self, seconds, *rest, **more: told.append(seconds))
+    monkeypatch.setattr(AdaptivePolicy, "finish", lambda self, seconds, *rest, **more: told.append(seconds))
     list(renderer.refine(parts=(4, 16), samples=3))
     assert len(told) == 1
     left = renderer.refine(parts=(4, 16))

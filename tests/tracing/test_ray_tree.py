@@ -18,7 +18,7 @@ from tracer.geometry.rays import ray_batch
 from tracer.inspect.path_records import TRACED, RayKind, RayTree
 from tracer.inspect.ray_tree import ray_tree, unused
 from tracer.inspect.reasons import WHY_TRACED
-from tracer.methods.adaptive_policy import Payoff, Plan
+from tracer.methods.adaptive_policy import AdaptivePolicy, Plan
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Cancelled
@@ -84,7 +84,7 @@ def test_all_trees_together_are_the_frame(scene_file: Path, method: str, acceler
 def test_certificates_that_auto_does_not_look_up_are_told_as_in_the_inspector(
     scene_file: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(Payoff, "plan", lambda self, *_: Plan(seconds=1.0))
+    monkeypatch.setattr(AdaptivePolicy, "plan", lambda self, *_: Plan(seconds=1.0))
     renderer, frame = rendered(scene_file, "auto", "bvh8")
     told: Counter[str] = Counter()
     (auto,) = renderer.work_on(frame).methods

@@ -34,7 +34,7 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(run: Run) -> None:
     results, out = bench(run, *more, "--csv", "table.csv", "--plot", "plot.svg")
     assert list(results)[:4] == ["scene", "size", "frames", "methods"]
     assert Path("plot.svg").read_text().startswith("<?xml")
-    assert "figure4.aff, 48 × 32, frames 1 to 4 of 6" in out and "no speed-up is told" in out
+    assert "figure4.aff, 48 × 32, frames 1 to 4 of 6" in out and "no speed-up is given" in out
     whole, timed = bench(run)
     assert results["times"] == whole["times"][1:5] and results["path_frames"] == 6
     assert (results["planned_frames"], results["stopped"]) == (4, False)
@@ -102,9 +102,9 @@ def test_progress_shows_frame_method_time_gone_and_time_left() -> None:
     terminal = Terminal("bench", "default", "--frames", ":8", "--size", "160x160")
     *_, said = terminal.lines()
     assert terminal.end() == 0
-    shown = re.findall(r"frame (\d) of 8, (?:none|paper) \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
+    shown = re.findall(r"frame (\d) of 8, (?:None \(trace all\)|Paper) \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
     assert len({frame for frame, _, _ in shown}) > 2
-    assert "of 8, none " in said and "of 8, paper " in said, "the one that is being traced"
+    assert "of 8, None (trace all) " in said and "of 8, Paper " in said, "the one that is being traced"
     assert [frame for frame, _, _ in shown] == sorted(frame for frame, _, _ in shown)
     assert shown[-1][1] > "0:00:00"
     assert "│ paper" in said[said.rindex(" left") :]

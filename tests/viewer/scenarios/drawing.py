@@ -108,7 +108,7 @@ def _off_and_on(d: Driver) -> None:
 def _in_saved_pictures(d: Driver) -> None:
     """Only where that is wanted; then the rest of the picture is what it was, and it still brings everything back."""
     p = d.c.preferences
-    assert np.array_equal(d.saved("without.png"), d.shown())
+    assert np.array_equal(d.settle().saved("without.png"), d.shown())
     d.show_panel("Saving").click("//Saving/Legend in saved pictures")
     assert p.legend_in_pictures
     other = (d.saved("with.png") != d.shown()).any(axis=-1)
