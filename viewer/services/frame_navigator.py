@@ -16,7 +16,7 @@ from viewer.output.comparison import Crop
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.history import KEPT_FRAMES, FrameHistory
 from viewer.services.inspector import Selection
-from viewer.services.render_request import Traced, Warmup
+from viewer.services.render_request import FramesBefore, Traced
 from viewer.services.runs import Experiment, Runs
 from viewer.services.undo import Undo
 from viewer.state.notices import Notices
@@ -90,7 +90,7 @@ class FrameNavigator:
 
     def go_to(
         self, state: ViewState, name: str, point: Point | None = None, zoom: Zoom | None = None,
-        warmup: Warmup | None = None,
+        warmup: FramesBefore | None = None,
     ) -> None:  # fmt: skip
         """Restore a state, and select a point of the picture once that has come; `zoom` is how closely it is looked at
         then.

@@ -16,7 +16,7 @@ from tracer.renderer import Renderer
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
 from viewer.services.frame_inputs import FrameInputs
 from viewer.services.refinement import LampSamples, Refinement
-from viewer.services.render_request import RenderRequest, Traced, Warmup, as_asked, missing_buffers
+from viewer.services.render_request import FramesBefore, RenderRequest, Traced, as_asked, missing_buffers
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.view_state import ViewState
@@ -43,7 +43,7 @@ class FrameScheduler:
         self.traced: Traced | None = None
         self.budget, self.refinement, self.lamps = FrameBudget(), Refinement(), LampSamples()
         self._serial = 0
-        self._frozen: tuple[object, Warmup] | None = None  # what stays as it was found, and the frames before it
+        self._frozen: tuple[object, FramesBefore] | None = None  # what stays as it was found, and the frames before it
         self._refines = False  # whether the last frame was asked for to refine what is known
         self._asked: RenderRequest | None = None
         self._new = False  # the scene
@@ -104,7 +104,7 @@ class FrameScheduler:
         self.refinement.forget()
         self.trace_once_more()
 
-    def freeze(self, state: ViewState, warmup: Warmup) -> None:
+    def freeze(self, state: ViewState, warmup: FramesBefore) -> None:
         """Forget all modes, trace these frames, and then a state, with one sample a pixel; no further frame follows, as
         that would know more, until something else is looked at, or asked for."""
         self.forget_modes()

@@ -24,7 +24,7 @@ from viewer.util.messages import one_line
 T = TypeVar("T")
 REFINEMENT_SECONDS = 0.4
 """That a frame that refines another may spend on certificates: the picture is there already, and a movement ends it."""
-Warmup = tuple[tuple[float, Camera], ...]
+FramesBefore = tuple[tuple[float, Camera], ...]
 """Frames by time and camera."""
 Parts = Generator[tuple[Frame, Frame | None], None, None]
 """Frames of a picture, each with the same by a second method, if any."""
@@ -58,7 +58,7 @@ class RenderRequest:
     parts: tuple[float, ...] = field(default=(16,), compare=False)
     quick: bool = field(default=False, compare=False)
     focus: tuple[float, float] | None = field(default=None, compare=False)
-    warmup: Warmup | None = None
+    warmup: FramesBefore | None = None
 
     @property
     def traced_settings(self) -> Settings:

@@ -10,15 +10,15 @@ from tracer.culling.fate import Fate
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.views import View, can_draw
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values
 from viewer.views.legend import Legend, lights_in_words
 
 USUAL = DrawOptions()
 
 
-def view_of(view: View) -> FrameView:
+def view_of(view: View) -> DrawnView:
     """Return the view of this name."""
-    return cast(FrameView, view.declared)
+    return cast(DrawnView, view.declared)
 
 
 def colorize(frame: Frame, draw: DrawOptions = USUAL, fate: Fate | None = None) -> Pixels:
@@ -40,7 +40,7 @@ def values_of(frame: Frame, draw: DrawOptions) -> Values:
     return _drawable(frame, draw).values(frame, draw)
 
 
-def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
     """Return the exact value of a pixel, in a few short lines; none where the view cannot be drawn of this frame."""
     view = view_of(draw.view)
     if not view.can_draw(frame, draw.light):
@@ -50,7 +50,7 @@ def words_at(frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
     return view.words(frame, draw, x, y)
 
 
-def _drawable(frame: Frame, draw: DrawOptions) -> FrameView:
+def _drawable(frame: Frame, draw: DrawOptions) -> DrawnView:
     view = view_of(draw.view)
     if not view.can_draw(frame, draw.light):
         raise ValueError(f"the frame has nothing for the view {view.label}: it has not recorded that")

@@ -19,7 +19,7 @@ from viewer.state.views import Declaration
 from viewer.views.legend import Legend
 from viewer.views.paint import Pixels
 
-Words = tuple[str, ...]
+Lines = tuple[str, ...]
 Lights = tuple[Light, ...]
 T = TypeVar("T")
 
@@ -36,7 +36,7 @@ class Values:
     classes: bool = False
 
 
-class FrameView(Declaration):
+class DrawnView(Declaration):
     """A view: the file that declares one names an instance of a subclass `VIEW`.
 
     What a view returns is asked of frames that it can draw."""
@@ -60,7 +60,7 @@ class FrameView(Declaration):
         """Return the exact values that it shows."""
         raise NotImplementedError
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         """Return what it shows of one pixel, in a few short lines."""
         raise NotImplementedError
 

@@ -7,7 +7,7 @@ import numpy as np
 from tracer.frame import Frame
 from viewer.state.views import CELL_LIGHTS
 from viewer.util.numbers import count
-from viewer.views.base import Words
+from viewer.views.base import Lines
 from viewer.views.kinds import CountView
 from viewer.views.legend import Entry, fact
 
@@ -28,7 +28,7 @@ class CellLights(CountView):
     def facts(self, frame: Frame) -> tuple[Entry, ...]:
         return (fact("cells in view", count(len(np.unique(frame.cell[self.seen(frame)])))),)
 
-    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Words:
+    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Lines:
         return f"{found} of {frame.lights}", "lights"
 
 

@@ -9,7 +9,7 @@ from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions, Tone, clipped, toned
 from viewer.state.palette import hex_color
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values
 from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_color, checkered
 
@@ -19,7 +19,7 @@ TOO_BRIGHT, BLACK = hex_color("FF3B30"), hex_color("2F7BFF")
 STRIPE = 4
 
 
-class Color(FrameView):
+class Color(DrawnView):
     label = "Colour"
     key = "1"
     help = "The traced picture."
@@ -47,7 +47,7 @@ class Color(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return Values(frame.color, CHANNELS, np.ones(frame.primitive.shape, np.bool_))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         return tuple(f"{channel:.3f}" for channel in frame.color[y, x])
 
 

@@ -11,7 +11,7 @@ from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import AXES
 from viewer.state.palette import LESS, MORE, SAME, WIPE_LINE
 from viewer.util.numbers import count, percent
-from viewer.views.base import Pixels, Values, Words
+from viewer.views.base import Lines, Pixels, Values
 from viewer.views.color import CHANNELS
 from viewer.views.difference import Mark, marks
 from viewer.views.legend import Entry, Legend, Note, NoteKind, Scale, fact
@@ -56,7 +56,7 @@ class Difference:
         size = np.abs(self.pixels)
         return Values(self.pixels[..., None], ("B - A",), (size > 0.0) & (size < ENDLESS), self.values.classes)
 
-    def words(self, x: int, y: int) -> Words:
+    def words(self, x: int, y: int) -> Lines:
         """Return what it says of one pixel."""
         apart = float(self.pixels[y, x])
         if self.values.classes:

@@ -9,7 +9,7 @@ from tracer.method import Method
 from tracer.methods.method_limits import lights_in_words, too_few
 from viewer.state.views import CUT_BOUND, CUT_NODES
 from viewer.util.numbers import percent
-from viewer.views.base import Words
+from viewer.views.base import Lines
 from viewer.views.kinds import CountView
 from viewer.views.legend import Entry, Note, NoteKind, fact
 
@@ -52,7 +52,7 @@ class Cuts(CountView):
         one = "light" if cuts.lights == frame.lights else "sample of a light"
         return (Note(f"Nearly every {one} is a cluster of its own{f': {few}' if few else ''}.", NoteKind.WARNING),)
 
-    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Words:
+    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Lines:
         return f"{found}", f"± {100.0 * float(frame.layers[CUT_BOUND][y, x]):.3g} %"
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, percentiles, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, hits, once, percentiles, single
 from viewer.views.legend import Legend, Scale
 from viewer.views.paint import by_number, in_range
 
@@ -14,7 +14,7 @@ FAR = np.float32(1e30)
 """Stands for the depth of what hits nothing, so that numbers can be subtracted."""
 
 
-class Depth(FrameView):
+class Depth(DrawnView):
     label = "Depth"
     key = "5"
     help = "Distance from the camera along the ray."
@@ -38,7 +38,7 @@ class Depth(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(np.where(hits(frame), frame.depth, FAR), "depth", hits(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         return (f"{frame.depth[y, x]:.5g}",)
 
 

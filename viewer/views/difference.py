@@ -15,7 +15,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import WRONG
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, is_shaded, once, shaded_pixels, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, is_shaded, once, shaded_pixels, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import by_color, in_bytes
@@ -30,7 +30,7 @@ _VISIBLE = "those whose 8-bit colour is wrong: an answer deep in reflections may
 _LARGEST = "between a channel of a wrong pixel's colour and the right one, also where both are too bright for a screen"
 
 
-class Difference(FrameView):
+class Difference(DrawnView):
     label = "Difference"
     key = "8"
     also = "wrong"
@@ -53,7 +53,7 @@ class Difference(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(verified.known(frame.wrong), "wrong answers", shaded_pixels(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         return (f"{int(verified.known(frame.wrong)[y, x])} wrong",) if is_shaded(frame, x, y) else ("?",)
 
 

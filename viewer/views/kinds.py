@@ -20,12 +20,12 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY, Class
 from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, once, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, hits, once, single
 from viewer.views.legend import Entry, Legend, Note, NoteKind, Scale, fact
 from viewer.views.paint import by_class, by_number, in_range
 
 
-class ClassView(FrameView):
+class ClassView(DrawnView):
     """A view of classes in flat colours."""
 
     is_flat = True
@@ -78,7 +78,7 @@ class ClassView(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(self.found(frame, draw), self.what, hits(frame), classes=True)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         name = self.classes[self.found(frame, draw)[y, x]].name
         return tuple(re.split(": |, ", name) if re.search(": |, ", name) else name.split())
 
@@ -159,7 +159,7 @@ def culled_by_modes(frame: Frame, light: int | None = None, number: int | None =
     return (Entry(name, None, tuple(columns), tip, quiet=True), *rows)
 
 
-class CountView(FrameView):
+class CountView(DrawnView):
     """A map of a count, of lights or of clusters of them, which is not known everywhere."""
 
     has_range = True
@@ -212,10 +212,10 @@ class CountView(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(self.find(frame), self.what, self.seen(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         found = int(self.find(frame)[y, x])
         return ("?",) if found < 0 else self.known_words(frame, found, x, y)
 
-    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Words:
+    def known_words(self, frame: Frame, found: int, x: int, y: int) -> Lines:
         """Return what it shows of a pixel where it is known."""
         return (str(found),)

@@ -94,7 +94,7 @@ NOTES: dict[NoteKind, Color] = {
 
 
 @dataclass(frozen=True)
-class Words:
+class PlacedText:
     """A line of text; its upper left corner."""
 
     x: float
@@ -120,7 +120,7 @@ class Layout:
 
     width: float
     height: float
-    words: tuple[Words, ...]
+    words: tuple[PlacedText, ...]
     boxes: tuple[Box, ...]
     tips: tuple[tuple[float, float, str], ...]
 
@@ -162,14 +162,14 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
         _scale_width(legend, measure, line),
         NOTE_WIDTH * line if legend.notes else 0.0,
     )
-    words, boxes, tips = [Words(pad, pad, legend.title)], [], []
+    words, boxes, tips = [PlacedText(pad, pad, legend.title)], [], []
     y = pad + step
 
-    def values(texts: tuple[str, ...], color: Color) -> Iterator[Words]:
+    def values(texts: tuple[str, ...], color: Color) -> Iterator[PlacedText]:
         right = pad + inner
         for width, text in zip(reversed(widths), reversed((*texts, *[""] * (columns - len(texts))))):
             if text:
-                yield Words(right - measure(text), y, text, color)
+                yield PlacedText(right - measure(text), y, text, color)
             right -= width + gap
 
     if legend.scale is not None:
@@ -179,9 +179,9 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
             left = inner * k / STEPS  # each as far as the bar's end: there are no seams where the next one begins
             boxes.append(Box(pad + left, y + 0.1 * line, inner - left, 0.7 * line, (red, green, blue)))
         y += line
-        words.append(Words(pad, y, scale.low))
-        words.append(Words(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))
-        words.append(Words(pad + inner - measure(scale.high), y, scale.high))
+        words.append(PlacedText(pad, y, scale.low))
+        words.append(PlacedText(pad + (inner - measure(scale.middle)) / 2.0, y, scale.middle, QUIET))
+        words.append(PlacedText(pad + inner - measure(scale.high), y, scale.high))
         y += step
     if legend.columns:
         words += values(legend.columns, QUIET)
@@ -192,16 +192,16 @@ def lay_out(legend: Legend, measure: Measure, line: float) -> Layout:
             boxes.append(Box(pad, y + 0.12 * line, side, side, row.color))
             if row.stripes is not None:
                 boxes += [Box(pad + k * side, y + 0.12 * line, side / 4.0, side, row.stripes) for k in (0.25, 0.75)]
-            words.append(Words(pad + indent, y, row.name))
+            words.append(PlacedText(pad + indent, y, row.name))
         else:
-            words.append(Words(pad, y, row.name, QUIET))
+            words.append(PlacedText(pad, y, row.name, QUIET))
         words += values(row.values, QUIET if row.quiet else LIGHT)
         if row.meaning:
             tips.append((y, y + step, row.meaning))
         y += step
     for note in legend.notes:
         for text in wrapped(note.text, measure, inner):
-            words.append(Words(pad, y, text, NOTES[note.kind]))
+            words.append(PlacedText(pad, y, text, NOTES[note.kind]))
             y += step
     height = y - (step - line) + pad
     return Layout(inner + 2.0 * pad, height, tuple(words), tuple(boxes), tuple(tips))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from tracer.frame import Frame
 from viewer.state.draw_options import AXES, DrawOptions
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, hits
 from viewer.views.legend import Entry, Legend
 from viewer.views.paint import by_color
 
 
-class Normal(FrameView):
+class Normal(DrawnView):
     label = "Normals"
     key = "6"
     help = "The shading normal: x, y, z as red, green, blue."
@@ -24,7 +24,7 @@ class Normal(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return Values(frame.normal, AXES, hits(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         return tuple(f"{axis:+z.3f}" for axis in frame.normal[y, x])
 
 

@@ -13,7 +13,7 @@ from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import FACES_AWAY, SHADOW, UNKNOWN, Class, hex_color
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
-from viewer.views.base import Lights, Pixels, Values, Words, hits, is_shaded, shaded_pixels, single
+from viewer.views.base import Lights, Lines, Pixels, Values, hits, is_shaded, shaded_pixels, single
 from viewer.views.kinds import ClassView
 from viewer.views.legend import Legend, fact
 from viewer.views.paint import by_color
@@ -91,7 +91,7 @@ class Penumbra(ClassView):
         known = hits(frame) & shaded_pixels(frame) & (samples_of(frame, draw.light)[0] > 0)
         return single(_reaching(frame, draw.light), self.what, known)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         asked, reached = samples_of(frame, draw.light)
         return (f"{int(reached[y, x])} of {int(asked[y, x])}",) if is_shaded(frame, x, y) else ("?",)
 

@@ -7,13 +7,13 @@ import numpy as np
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import GREY
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, hits, single
 from viewer.views.kinds import culled_by_modes
 from viewer.views.legend import Entry, Legend, Scale
 from viewer.views.paint import by_number
 
 
-class PixelCount(FrameView):
+class PixelCount(DrawnView):
     label = "Pixel count"
     key = "7"
     help = "Pixels a primitive covers now, against those of its last examination."
@@ -37,7 +37,7 @@ class PixelCount(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(frame.pixel_count[frame.unit], "pixels of the primitive", hits(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         unit = frame.unit[y, x]
         examined = int(frame.highest_count[unit])
         return f"{int(frame.pixel_count[unit])} now", f"{examined} examined" if examined else "not examined"

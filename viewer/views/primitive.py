@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from tracer.frame import Frame
 from viewer.state.draw_options import DrawOptions
 from viewer.util.numbers import count
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, hits, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, hits, single
 from viewer.views.legend import Legend, fact
 from viewer.views.paint import by_class
 
 
-class Primitive(FrameView):
+class Primitive(DrawnView):
     label = "Primitives"
     key = "4"
     help = "Every primitive in a colour of its own."
@@ -32,7 +32,7 @@ class Primitive(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(frame.primitive, "primitive", hits(frame), classes=True)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         return (str(int(frame.primitive[y, x])),)
 
 

@@ -13,11 +13,11 @@ from viewer.state.palette import GREY
 from viewer.state.views import Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import (
-    FrameView,
+    DrawnView,
     Lights,
+    Lines,
     Pixels,
     Values,
-    Words,
     is_shaded,
     once,
     percentiles,
@@ -29,7 +29,7 @@ from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import by_number, in_range
 
 
-class Work(FrameView):
+class Work(DrawnView):
     """A map of rays at each pixel: how many, or which share of a whole they are."""
 
     records = Record.WORK
@@ -82,7 +82,7 @@ class Work(FrameView):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return single(self.rays(frame), self.name, shaded_pixels(frame))
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         if not is_shaded(frame, x, y):
             return ("?",)
         work = int(self.rays(frame)[y, x])

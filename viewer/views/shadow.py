@@ -10,7 +10,7 @@ from tracer.frame import Frame
 from tracer.scene.lights import number_of
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import OCCLUSION, SHADOW, Class
-from viewer.views.base import Lights, Words
+from viewer.views.base import Lights, Lines
 from viewer.views.kinds import ModeView, culled_by_modes, not_culled, shadow_modes
 from viewer.views.legend import Legend
 
@@ -63,7 +63,7 @@ class Shadow(ModeView):
         facts = culled_by_modes(frame, draw.light, number_of(lights, draw.light))
         return self.mode_legend(frame, draw, title, facts)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         moves = self.found(frame, draw)[y, x] == _MOVES
         if moves or has_shadow_mode(frame.modes, draw.light):
             return super().words(frame, draw, x, y)

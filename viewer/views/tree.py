@@ -14,7 +14,7 @@ from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import hex_color
 from viewer.state.views import TREE
 from viewer.util.numbers import count, percent, several
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Scale, fact
 from viewer.views.paint import (
@@ -39,7 +39,7 @@ WAITS_COLORS = hex_color("4A4E57"), hex_color("6B707B")
 """Stripes of what of a tree is not built."""
 
 
-class Tree(FrameView):
+class Tree(DrawnView):
     label = "Tree built"
     key = "Shift+T"
     help = (
@@ -88,7 +88,7 @@ class Tree(FrameView):
         found, _ = tree_seen(frame, draw.slice)
         return single(np.where(found.built, found.levels, -1), "level", found.numbers != NOWHERE, classes=True)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         """Return what part is seen, with the word for what owners are; a dash for none."""
         found, _ = tree_seen(frame, draw.slice, (slice(y, y + 1), slice(x, x + 1)))
         number, level, built, held, owner = (

@@ -14,7 +14,7 @@ from viewer.state.draw_options import AXES, DrawOptions, Slice
 from viewer.state.palette import GREY, SHADOW, Color
 from viewer.state.views import VOXELS
 from viewer.util.numbers import count, percent
-from viewer.views.base import FrameView, Lights, Pixels, Values, Words, once, single
+from viewer.views.base import DrawnView, Lights, Lines, Pixels, Values, once, single
 from viewer.views.color import dimmed
 from viewer.views.legend import Entry, Legend, Note, NoteKind, fact
 from viewer.views.paint import CELL_LINE, by_color, in_bytes, met, on_line, wide_enough
@@ -36,7 +36,7 @@ STATES: dict[int, tuple[Color, str]] = {
 _PALETTE = np.asarray([color for color, _ in STATES.values()], np.float32)
 
 
-class Voxels(FrameView):
+class Voxels(DrawnView):
     label = "Voxels"
     key = "Shift+V"
     help = (
@@ -84,7 +84,7 @@ class Voxels(FrameView):
         states = voxels_of(frame).states(draw.light, np.maximum(numbers, 0).astype(np.int64))
         return single(states, "state of the voxel", numbers >= 0, classes=True)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         """Return the voxel's place and its state; a dash where none is seen."""
         number = int(voxels_seen(frame, draw.slice)[0][y, x])
         if number < 0:

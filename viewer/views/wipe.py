@@ -9,7 +9,7 @@ from viewer.state import verified
 from viewer.state.draw_options import DrawOptions
 from viewer.state.palette import WIPE_LINE, WRONG
 from viewer.views import color
-from viewer.views.base import Lights, Pixels, Values, Words
+from viewer.views.base import Lights, Lines, Pixels, Values
 from viewer.views.color import displayed
 from viewer.views.difference import Difference, Mark, legend_of_wrong, wrong_marks
 from viewer.views.legend import Legend
@@ -41,7 +41,7 @@ class Wipe(Difference):
     def values(self, frame: Frame, draw: DrawOptions) -> Values:
         return color.VIEW.values(frame, draw)
 
-    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Words:
+    def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
         return color.VIEW.words(frame, draw, x, y)
 
 

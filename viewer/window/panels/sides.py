@@ -15,7 +15,7 @@ from viewer.state.palette import DARK, HELD, LESS, LIGHT, MORE, Color
 from viewer.state.picking import pixel_at
 from viewer.state.views import View
 from viewer.views import words_at
-from viewer.views.base import Pixels, Words
+from viewer.views.base import Lines, Pixels
 from viewer.views.compare import composed, difference_legend, signed_picture
 from viewer.views.legend import Legend
 from viewer.views.wipe import wipe_column
@@ -101,7 +101,7 @@ def legend(ui: Ui) -> Legend | None:
     return None if found is None else difference_legend(found, comparing.limit(found))
 
 
-def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame, Callable[[int, int], Words]] | None:
+def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame, Callable[[int, int], Lines]] | None:
     """Return the frame whose pixels are seen, and what says what each of them shows: those of a side, or of all that
     fills the picture; None without a frame."""
     seen = ui.controller.comparing.seen
@@ -114,7 +114,7 @@ def words(ui: Ui, options: DrawOptions, side: Side | None = None) -> tuple[Frame
     wiped = seen if seen is not None and side is None and seen.has_line else None
     column = wipe_column(width, options.wipe)
 
-    def of(x: int, y: int) -> Words:
+    def of(x: int, y: int) -> Lines:
         one = found if wiped is None else wiped.a if x < column else wiped.b
         at = pixel_at(one.frame, (x + 0.5) / width, (y + 0.5) / height)
         return words_at(one.frame, replace(options, view=one.view, light=one.light), *at)
