@@ -91,7 +91,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 25_187, "tracer": 41_170, "tests/viewer": 12_480}
+MOST_LINES = {"viewer": 25_186, "tracer": 41_170, "tests/viewer": 12_480}
 MOST_FILES = {"viewer": 167}
 
 

@@ -5,7 +5,6 @@ Ctrl-C ends it after the last whole picture: what was found is shown, and writte
 
 from __future__ import annotations
 
-import shlex
 from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +19,7 @@ from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
 from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene
-from tracer.util.text import printable
+from tracer.util.text import printable, shell_line
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import Work, listed, print_table, working
@@ -152,5 +151,5 @@ def _save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: V
     words += ["--pixel", f"{find.x},{find.y}", "--before", path.name, "--only", "wrong"]
     told = counterexample.to_json(find, scene) | {"size": found.size, "method": found.method}
     told |= {"scene": found.scene, "settings": found.settings}
-    told |= {"words": counterexample.in_words(find, scene), "explain": shlex.join(words)}
+    told |= {"words": counterexample.in_words(find, scene), "explain": shell_line(words)}
     exports.write_json(path, told, indent=1)

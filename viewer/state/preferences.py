@@ -155,7 +155,7 @@ def _read(path: Path) -> tuple[Mapping[str, Any] | None, str | None]:
         return data, None
     except FileNotFoundError:
         return None, None
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         why = f"could not be read ({error.strerror})" if isinstance(error, OSError) else "were damaged"
     kept = path.with_suffix(".damaged.json")
     try:

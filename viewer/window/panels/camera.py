@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import replace
 from functools import partial
@@ -13,7 +12,7 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tracer.scene.model import Camera
 from tracer.util.setting import Setting
-from viewer.state import navigation
+from viewer.state import codec, navigation
 from viewer.state.picking import extent_at, point_at, points_of
 from viewer.state.preferences import NAVIGATION
 from viewer.window import menus
@@ -156,7 +155,7 @@ def _go_near(ui: Ui, point: np.ndarray, radius: float) -> None:
 
 
 def _copy(ui: Ui) -> None:
-    imgui.set_clipboard_text(json.dumps(ui.controller.session.camera.to_json()))
+    imgui.set_clipboard_text(codec.text(ui.controller.session.camera.to_json()))
     ui.controller.notices.say("camera copied as JSON")
 
 
@@ -164,9 +163,9 @@ def _paste(ui: Ui) -> None:
     """Fly to the camera on the clipboard; what its JSON leaves out stays as it is."""
     c = ui.controller
     try:
-        data = c.session.camera.to_json() | {"position": None} | json.loads(imgui.get_clipboard_text() or "")
+        data = c.session.camera.to_json() | {"position": None} | codec.from_text(imgui.get_clipboard_text() or "")
         c.motion.glide(Camera.from_json(data))
-    except (TypeError, ValueError, RecursionError):
+    except (TypeError, ValueError):
         c.notices.say("no camera pasted: the clipboard holds no camera as JSON", error=True)
     else:
         c.notices.say("camera pasted")

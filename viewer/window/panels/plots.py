@@ -117,7 +117,8 @@ def show(ui: Ui) -> None:
     tip = f"Show only the pictures of the {RECENT:.0f} seconds before the newest."
     checkbox(f"last {RECENT:.0f} s", state.recent, lambda on: setattr(state, "recent", on), tip)
     imgui.same_line()
-    shown = len(history) - _start(ui)
+    start = _start(ui) if state.recent else 0
+    shown = len(history) - start
     clipped(f"the last {shown} pictures" if shown > 1 else "one picture", QUIET)
     tooltip(_PER_PIXEL)
     plots = [plot for plot in _PLOTS if not plot.only_if or history.values(plot.only_if).any()]
@@ -129,17 +130,17 @@ def show(ui: Ui) -> None:
     for number, plot in enumerate(plots):
         if number % columns:
             imgui.same_line()
-        _draw(ui, plot, size)
+        _draw(ui, plot, size, start)
 
 
 def _start(ui: Ui) -> int:
-    """Return the place of the first frame that is shown among all that could be."""
+    """Return the place of the first of the last seconds' frames among all that could be shown."""
     came = ui.controller.history.values("came")
-    return int(np.searchsorted(came, came[-1] - RECENT)) if ui.state(PlotsState).recent else 0
+    return int(np.searchsorted(came, came[-1] - RECENT))
 
 
-def _draw(ui: Ui, plot: _Plot, size: ImVec2) -> None:
-    history, start = ui.controller.history, _start(ui)
+def _draw(ui: Ui, plot: _Plot, size: ImVec2, start: int) -> None:
+    history = ui.controller.history
     values_of = history.per_pixel if plot.per_pixel else history.values  # contiguous float64, as ImPlot wants them
     implot.push_style_var(implot.StyleVar_.legend_inner_padding, ImVec2(em(0.15), em(0.3)))
     implot.push_style_var(implot.StyleVar_.legend_spacing, ImVec2(em(0.2), 0.0))
