@@ -16,7 +16,7 @@ from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
 from tracer.geometry.tree_parts import TreeParts
-from tracer.runtime.kernels import Entry
+from tracer.runtime.kernels import NativeCallback
 from tracer.scene.arrays import Float32, Float64
 
 
@@ -74,11 +74,11 @@ class Structure(Protocol):
     `together` is how many rays may go through a tree side by side: 128, 16, or 1; set before a world is placed.
     """
 
-    closest: Entry
-    any_hit: Entry
+    closest: NativeCallback
+    any_hit: NativeCallback
     hit_padding: float
     extent: float
-    together: int
+    max_packet_size: int
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Move all present objects to their poses; `resting` (objects,) tells which count as static geometry."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.accelerators import MOST_TOGETHER
+from tracer.geometry.accelerators import MAX_PACKET_SIZE
 from tracer.geometry.boxes import NO_BOX, PADDING, union_of
 from tracer.geometry.building import watched
 from tracer.geometry.bvh8 import subtrees, traverse
@@ -39,7 +39,7 @@ class Bvh8:
 
     closest, any_hit = traverse.closest, traverse.any_hit
     hit_padding = PADDING
-    together = MOST_TOGETHER
+    max_packet_size = MAX_PACKET_SIZE
 
     def __init__(
         self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = False
@@ -133,7 +133,7 @@ class Bvh8:
                 (self.static, 0, table), (self.dynamic, self.resting_root, 0), (self.dynamic, 0, 0)
             )
         ]  # fmt: skip
-        self._data = pack_world(World8(there, self.together), trees)
+        self._data = pack_world(World8(there, self.max_packet_size), trees)
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
         return placed_by(self, primitives, to_object, self._data, bool(moving.any()), there_now[0])
 
