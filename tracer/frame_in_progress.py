@@ -460,9 +460,6 @@ class FrameInProgress:
         statistics.wrong = self._wrong()
         statistics.say(remark(Method.parse(settings.method), lights, lamps))
         structures = {name: layers.pop(name) for name in list(layers) if not isinstance(layers[name], np.ndarray)}
-        parts = self._state.world.parts_built()
-        if parts is not None:
-            structures["tree"] = parts
 
         def per_pixel(rows: NDArray, recorded: bool) -> NDArray | None:
             return rows.reshape(*shape, *rows.shape[1:]) if recorded else None

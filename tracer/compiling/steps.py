@@ -141,9 +141,6 @@ def _builders(accelerator: str, renderer: Renderer) -> None:
     with_more = getattr(STRUCTURES[accelerator], "make_ready", None)
     if with_more is not None:
         with_more()
-    parts = renderer.world.parts_built()
-    if parts is not None:
-        parts.at(np.zeros((1, 3), np.float32), 0)
 
 
 def method_steps(lights: int, accelerator: str) -> Iterator[str]:
@@ -280,9 +277,6 @@ class _Nowhere:
         return np.ones_like(poses.present)
 
     def built(self) -> None:
-        pass
-
-    def parts_built(self) -> None:
         pass
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:

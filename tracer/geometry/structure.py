@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
-from tracer.geometry.tree_parts import TreeParts
 from tracer.runtime.kernels import NativeCallback
 from tracer.scene.arrays import Float32, Float64
 
@@ -94,9 +93,6 @@ class Structure(Protocol):
 
     def built(self) -> BuiltPart | None:
         """How much of it rays have had built so far; None for a structure that is built before they come."""
-
-    def parts_built(self) -> TreeParts | None:
-        """What rays have had built so far, and where; None where `built` is None."""
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is placed; inverted for an empty world."""

@@ -23,7 +23,6 @@ from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.geometry.structure import BuiltPart, Structure
-from tracer.geometry.tree_parts import TreeParts
 from tracer.runtime.kernels import NativeCallback
 from tracer.runtime.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import Chains
@@ -296,10 +295,6 @@ class World:
     def built(self) -> BuiltPart | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""
         return self.structure.built()
-
-    def parts_built(self) -> TreeParts | None:
-        """What rays have had built so far, and where; None where all is built before rays come."""
-        return self.structure.parts_built()
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -127,7 +127,7 @@ def _view(ui: Ui) -> list[Command]:
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "the scene has no other light"
     )
-    sliced = Condition(lambda: c.scheduler.drawn_view.has_slice, "choose the view Voxels or Tree built")
+    sliced = Condition(lambda: c.scheduler.drawn_view.has_slice, "choose the view Voxels")
 
     def show(view: View) -> Command:
         return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,

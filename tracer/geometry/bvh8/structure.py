@@ -17,7 +17,6 @@ from tracer.geometry.bvh8 import subtrees, traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
-from tracer.geometry.bvh8.parts import SubtreeParts
 from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE, PlacedTree, World8, pack_world
 from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.poses import Poses, products
@@ -74,7 +73,6 @@ class Bvh8:
         triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
         tree = LargeTree(triangle, box, np.zeros(2, np.int64), 1)
         tree.build_all()
-        SubtreeParts(tree, 1).at(box[:, :3].copy(), 0)
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -183,12 +181,6 @@ class Bvh8:
         starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
         size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
         return BuiltPart(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
-
-    def parts_built(self) -> SubtreeParts | None:
-        """Which subtrees of what never moves are built, and how."""
-        if self._large is None or not self._lazy:
-            return None
-        return SubtreeParts(self._large, len(self._primitives.object_of))
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

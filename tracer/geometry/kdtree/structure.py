@@ -166,9 +166,6 @@ class KdTree(InObjectSpace):
     def built(self) -> None:
         """All of it is built before rays come."""
 
-    def parts_built(self) -> None:
-        """None of it waits."""
-
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""
         boxes = np.stack([self.world.boxes[0], self.world.resting.box, self.world.moving.box])
