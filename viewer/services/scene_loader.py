@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from tracer.compiling.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
-from tracer.renderer import Renderer, Settings
 from tracer.method import title_of
+from tracer.renderer import Renderer, Settings
 from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
 from tracer.scene.mesh_options import IN_STUDIO, MeshOptions
