@@ -145,8 +145,8 @@ CASES = (_damaged_file, _walk, _rays, _walk)
 
 
 def attempt(number: int) -> str:
-    """A case, its arrays guarded at their ends or their beginnings; returns a digest of what was traced, and raises what
-    goes wrong."""
+    """Do a case, its arrays guarded at their ends or beginnings; returns a digest of what it traced, raises what went
+    wrong."""
     rng, digest = np.random.default_rng(number), hashlib.sha256()
     with np.errstate(all="ignore"):
         work = CASES[number % len(CASES)](rng, number)
