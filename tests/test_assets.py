@@ -106,18 +106,18 @@ def test_the_camera_never_touches_anything(study: tracer.Scene) -> None:
 
 @pytest.fixture(scope="module", params=["office", "courtyard"])
 def many_lights(request: pytest.FixtureRequest) -> tracer.Scene:
-    return tracer.load_scene(SCENES / f"{request.param}.aff")
+    return loaded(SCENES / f"{request.param}.aff")
 
 
 def test_the_office_has_256_panels_of_16_samples() -> None:
-    info = tracer.scene_info(tracer.load_scene(SCENES / "office.aff"))
+    info = tracer.scene_info(loaded(SCENES / "office.aff"))
     panels = {"kind": "rectangle", "samples": 16, "falloff": "inverse square", "lights": 256}
     assert info["light_kinds"] == [panels]
     assert info["warnings"] == [] and info["triangles"] < 400_000
 
 
 def test_the_courtyard_has_10_000_coloured_bulbs() -> None:
-    scene = tracer.load_scene(SCENES / "courtyard.aff")
+    scene = loaded(SCENES / "courtyard.aff")
     info = tracer.scene_info(scene)
     assert info["light_kinds"] == [{"kind": "point", "samples": 1, "falloff": "inverse square", "lights": 10_000}]
     assert info["warnings"] == [] and info["triangles"] < 100_000
