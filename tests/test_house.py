@@ -91,8 +91,8 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 25_186, "tracer": 41_170, "tests/viewer": 12_480}
-MOST_FILES = {"viewer": 167}
+MOST_LINES = {"viewer": 25_032, "tracer": 40_847, "tests/viewer": 12_345}
+MOST_FILES = {"viewer": 166}
 
 
 @pytest.mark.parametrize("package", MOST_LINES)

@@ -86,8 +86,7 @@ class Frame:
     structures : dict of str to object
         What else the method shows, by name, as this frame found it: "voxels"
         (`tracer.neighbours.voxels.tell.VoxelStates`) and "light cubes", of each of the first lights
-        (`tracer.neighbours.lightbuffer.tell.LightCube`); and "tree", an acceleration structure that is built where rays
-        arrive (`tracer.geometry.tree_parts.TreeParts`).
+        (`tracer.neighbours.lightbuffer.tell.LightCube`).
     statistics : FrameStatistics
         What the frame cost.
     """

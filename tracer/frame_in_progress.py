@@ -140,18 +140,18 @@ class FrameInProgress:
         state = self._state
         world = state.world
         poses = world.pose(self.time)
-        together = min(method.together for method in self.methods)
+        max_packet_size = min(method.max_packet_size for method in self.methods)
         if any([method.follows_rest() for method in self.methods]):
-            world.place(poses, state.rest.follow(poses, world.primitives, world.certain(poses)), together)
+            world.place(poses, state.rest.update(poses, world.primitives, world.certain(poses)), max_packet_size)
         else:
             state.rest.forget()
-            world.place(poses, together=together)
+            world.place(poses, max_packet_size=max_packet_size)
         self._use_lamps(self._lamps.at(state.scene.light_positions(self.time)))
         self.resting = state.rest.now
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
         for method in self.methods:
-            method.follow(self)
+            method.invalidate(self)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""
@@ -460,9 +460,6 @@ class FrameInProgress:
         statistics.wrong = self._wrong()
         statistics.say(remark(Method.parse(settings.method), lights, lamps))
         structures = {name: layers.pop(name) for name in list(layers) if not isinstance(layers[name], np.ndarray)}
-        parts = self._state.world.parts_built()
-        if parts is not None:
-            structures["tree"] = parts
 
         def per_pixel(rows: NDArray, recorded: bool) -> NDArray | None:
             return rows.reshape(*shape, *rows.shape[1:]) if recorded else None

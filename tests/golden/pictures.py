@@ -117,7 +117,6 @@ EXACT = "figure3-exact"
 OF_METHODS = (
     OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2)),
     OfMethod("default-cell-lights", "default", "lie-exact", View.CELL_LIGHTS, stray=60),
-    OfMethod("default-tree", "default", "none", View.TREE, stray=60, cut=Slice(1, 0.2), accelerator=LAZY),
     *(OfMethod(EXACT, "figure3", method, View.COLOR, stray=4) for method in ("voxels", "lie-exact", "lightbuffer")),
 )
 

@@ -16,7 +16,7 @@ def voxel_store(world: World, lights: np.ndarray, memory: float = 3e6, by_ray: b
     """Voxels that are classified for point lights (n, 3)."""
     store = VoxelStore(world, len(lights), 1, memory, by_ray)
     table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(len(lights))))
-    store.follow(table.at(np.asarray(lights, np.float64)), nothing_rests(len(world.scene.objects)))
+    store.update(table.at(np.asarray(lights, np.float64)), nothing_rests(len(world.scene.objects)))
     store.classify(np.inf, 1)
     return store
 
@@ -44,7 +44,7 @@ def point_lamps(places: np.ndarray) -> Lamps:
 def environment_store(world: World, lamps: Lamps, points: np.ndarray, memory: float = 3e7) -> EnvironmentStore:
     """Cells that are settled around points (n, 3)."""
     store = EnvironmentStore(world, lamps, 1, memory, True)
-    store.follow(lamps, nothing_rests(len(world.scene.objects)))
+    store.update(lamps, nothing_rests(len(world.scene.objects)))
 
     def want() -> None:
         store.tree.wanted[store.tree.leaves_at(points)] = True

@@ -47,7 +47,7 @@ def world() -> tracer.World:
 
 def _store(world: tracer.World, model: CostModel = WHOLE) -> CertificateStore:
     store = CertificateStore(world, len(LIGHTS), 1, model)
-    store.follow(LampTable(SQUARES.lights).at(LIGHTS), nothing_rests(1), 1)
+    store.update(LampTable(SQUARES.lights).at(LIGHTS), nothing_rests(1), 1)
     return store
 
 

@@ -19,7 +19,7 @@ from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.method import Kind, Method, bases, register, unregister
 from tracer.methods.interface import ShadowMethod, Stage
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.scene.model import Camera, Material
 
 BELOW = Camera((0.3, 0.2, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 40.0)
@@ -29,7 +29,7 @@ SETTINGS = tracer.Settings(width=64, height=48, depth=1, method="none", threads=
 # A method of ten lines: it takes every point for lit.
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     batch = shadow_batch_in(call_at(call).shadows)
     for v in range(vectors(count)):

@@ -42,7 +42,7 @@ TRACKS = {
 def place_and_follow(world: tracer.World, rest: Rest, time: float) -> tuple[Changed, Changed]:
     """Place the world at a time as a frame does; which objects have started to move since, and which stopped."""
     before, poses = rest.now, world.pose(time)
-    world.place(poses, rest.follow(poses, world.primitives, world.certain(poses)))
+    world.place(poses, rest.update(poses, world.primitives, world.certain(poses)))
     return changes(before, rest.now)
 
 

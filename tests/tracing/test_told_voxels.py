@@ -59,13 +59,13 @@ def test_pictures_hold_the_states_that_they_found():
     kept = shown.words.copy()
     moved = places + np.array([0.3, 0.1, 0.2])
     table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(len(places))))
-    store.follow(table.at(moved), nothing_rests(len(world.scene.objects)))
+    store.update(table.at(moved), nothing_rests(len(world.scene.objects)))
     store.classify(np.inf, 1)
     assert store.shown() is not shown and np.array_equal(shown.words, kept), "a picture that is kept has changed"
     del shown
     store.shown()
     words, before = store.words, store.words.copy()
-    store.follow(table.at(places), nothing_rests(len(world.scene.objects)))
+    store.update(table.at(places), nothing_rests(len(world.scene.objects)))
     store.classify(np.inf, 1)
     assert store.words is words and not np.array_equal(words, before), "what no picture holds is not copied"
 

@@ -170,7 +170,7 @@ def test_a_light_that_moves_is_classified_anew_and_others_are_not():
     moved = np.array([[1.0, 1.0, 3.0], [2.25, 1.0, -3.0]])
     store, fresh = voxel_store(world, places), voxel_store(world, moved)
     table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(2)))
-    store.follow(table.at(moved), nothing_rests(1))
+    store.update(table.at(moved), nothing_rests(1))
     assert store.state_at(np.array([1, 1, 0], np.float32), 1) == "none"
     assert not shadow_mode(store.words, 1).any() and shadow_mode(store.words, 0).any()
     made = store.classify(np.inf, 2).certificates

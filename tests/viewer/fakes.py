@@ -9,12 +9,9 @@ from pathlib import Path
 from threading import Event
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.culling.fate import CACHED, CANDIDATES, CULLED, DYNAMIC_ONLY, FACES_AWAY, MOVING_SHADOW, TRACED
 from tracer.frame import Frame, Settings
-from tracer.geometry.structure import BuiltPart
-from tracer.geometry.tree_parts import PartsAt, nothing_at
 from tracer.neighbours.voxels.tell import VoxelStates
 from tracer.scene.animation import Animation
 from tracer.scene.model import (
@@ -192,39 +189,6 @@ def with_voxels(frame: Frame) -> Frame:
     return replace(frame, structures=frame.structures | {"voxels": states})
 
 
-class CubesBuilt:
-    """A tree of cubes whose sides are a quarter, of which those of even x are built: deeper where z is above 0."""
-
-    name, owner, levels = "kdtree-lazy", "object", 8
-
-    def __init__(self) -> None:
-        self.extent = np.array([-2.0, -0.25, -1.0, 2.0, 1.75, 1.0], np.float32)
-        self.alive = True
-
-    def at(self, points: NDArray[np.float32], across: int) -> PartsAt | None:
-        """What lies at points (n, 3)."""
-        if not self.alive:
-            return None
-        with np.errstate(invalid="ignore"):
-            inside = np.asarray(((points >= self.extent[:3]) & (points < self.extent[3:])).all(1))
-            i, j, k = np.where(inside[:, None], np.floor(4.0 * points), 0).astype(np.int64).T
-        found = nothing_at(len(points))
-        found.numbers[inside] = (((i + 64) << 14) + ((j + 64) << 7) + k + 64)[inside]
-        found.owners[inside & (i >= 4)] = 3
-        found.levels[inside] = np.where(k >= 0, 6, 3)[inside]
-        even: NDArray[np.bool_] = np.asarray(i % 2 == 0)
-        found.built[inside] = even[inside]
-        found.widths[inside] = 0.25
-        found.held[inside & even] = 2
-        return found
-
-
-def with_tree(frame: Frame) -> Frame:
-    """The frame as of a tree that its rays have built in part."""
-    statistics = replace(frame.statistics, built=BuiltPart(123, 40, 160, 10_000))
-    return replace(frame, structures=frame.structures | {"tree": CubesBuilt()}, statistics=statistics)
-
-
 def with_cell_lights(frame: Frame) -> Frame:
     """The frame as if its cells knew which lights they must look at, drawn by lot; of some it is not known."""
     asked = np.random.default_rng(5).integers(-1, frame.lights + 1, frame.primitive.shape).astype(np.int32)
@@ -233,7 +197,7 @@ def with_cell_lights(frame: Frame) -> Frame:
 
 def with_everything(frame: Frame) -> Frame:
     """The frame with whatever any view shows."""
-    return with_tree(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame))))))
+    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame)))))
 
 
 def in_part(frame: Frame) -> Frame:

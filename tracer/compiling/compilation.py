@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -28,7 +28,7 @@ from tracer.compiling.steps import (
     render_tiny,
 )
 from tracer.culling.modes import MAX_CULLED_LIGHTS, word_type
-from tracer.method import Method
+from tracer.method import Method, title_of
 from tracer.runtime.kernel_cache import anything_kept, version_folder
 from tracer.scene.model import Progress
 
@@ -90,9 +90,17 @@ def make_ready(method: str, lights: int = 1, accelerator: str = "bvh8", progress
     """Compile or load what a method has of its own, besides what all pictures need."""
     if not ready_for(method, lights, accelerator):
         if progress is not None:
-            progress(f"compiling the kernels of {method}", 0.0)
+            progress(f"compiling the kernels of {title_of(method)}", 0.0)
         render_tiny(method, lights, accelerator)
         _methods.add(_variant(lights, accelerator, method))
+
+
+def make_all_ready(methods: Iterable[str], lights: int, accelerator: str, progress: Progress | None = None) -> None:
+    """Compile or load every kernel that these methods need for so many lights."""
+    names = list(methods)
+    warm_up(progress, lights, accelerator, picture_only=all(map(is_first, names)))
+    for name in names:
+        make_ready(name, lights, accelerator, progress)
 
 
 def is_first(method: str) -> bool:

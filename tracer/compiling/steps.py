@@ -32,7 +32,7 @@ from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import StageTable
 from tracer.neighbours.certified.cost_model import CostModel
 from tracer.renderer import Renderer
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.scene.animation import Animation
 from tracer.scene.crease import creased_normals
 from tracer.scene.mesh_options import CREASE
@@ -141,9 +141,6 @@ def _builders(accelerator: str, renderer: Renderer) -> None:
     with_more = getattr(STRUCTURES[accelerator], "make_ready", None)
     if with_more is not None:
         with_more()
-    parts = renderer.world.parts_built()
-    if parts is not None:
-        parts.at(np.zeros((1, 3), np.float32), 0)
 
 
 def method_steps(lights: int, accelerator: str) -> Iterator[str]:
@@ -252,7 +249,7 @@ def steps_of(part: str, lights: int, accelerator: str) -> Iterator[str]:
     return (step for step in _frame(lights, accelerator) if step != "the builder")
 
 
-@entry
+@native_callback
 def _no_hit(data, batch, first, last, counts):
     """Rays first to last - 1 meet nothing."""
     hits = read_batch(batch)
@@ -261,7 +258,7 @@ def _no_hit(data, batch, first, last, counts):
         t[i], primitive[i] = INFINITY, MISS
 
 
-@entry
+@native_callback
 def _nothing(data, batch, first, last, counts):
     """Nobody asks, as no ray has hit anything."""
 
@@ -280,9 +277,6 @@ class _Nowhere:
         return np.ones_like(poses.present)
 
     def built(self) -> None:
-        pass
-
-    def parts_built(self) -> None:
         pass
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:

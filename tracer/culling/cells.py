@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.intersect import hit_triangle
-from tracer.geometry.memory import borrowed, data_pointer
+from tracer.geometry.memory import data_pointer, without_refcount
 from tracer.geometry.queries import hits_alone
 from tracer.geometry.rays import INFINITY, MISS
 from tracer.runtime.kernels import inlined, kernel, subkernel
@@ -122,7 +122,7 @@ def hits_unit(world, ray, primitive, first, unit):
 @kernel
 def units_of(first, primitives, u, v, units):
     """The unit, or MISS, at each of n pixels that see `primitives` at these weights of their corners; all (n,)."""
-    first, primitives, u, v = borrowed(first), borrowed(primitives), borrowed(u), borrowed(v)
+    first, primitives, u, v = without_refcount((first, primitives, u, v))
     whole = len(units) & ~15
     for at in range(0, 4 * whole, 64):
         seen = load_i32x16(address_of(primitives) + at)

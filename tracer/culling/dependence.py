@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, MAX_CULLED_LIGHTS, occlusion_bits
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.geometry.primitives import Outlines
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.runtime.parallel import for_each_chunk
@@ -127,7 +127,7 @@ def _widen(points, n, bounds, box):
 def _drop(words, outlines, lights, boxes, mode, first, last):
     """Drop `mode` of each light, at lights (l, 3), from those units first to last - 1 whose pyramid meets a box, the
     first of boxes (k, 6) being around all others."""
-    words, outlines, lights, boxes = borrowed(words), borrowed(outlines), borrowed(lights), borrowed(boxes)
+    words, outlines, lights, boxes = without_refcount((words, outlines, lights, boxes))
     points, box = np.empty((9, 3)), np.empty(6)
     for unit in range(first, last):
         word, n = np.uint64(words[unit]), 0

@@ -18,7 +18,7 @@ import numpy as np
 from tracer.culling.cells import hits_unit
 from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, INIT, PARTIALLY_OCCLUDED, occlusion_bits
 from tracer.geometry.camera import primary_ray
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.geometry.rays import MISS
 from tracer.runtime.kernels import inlined, kernel
 from tracer.simd import address_of, bits_of, i32x16, lanes_below, load_i32, load_i32x16, local_memory, lowest_bit, store
@@ -69,8 +69,8 @@ def occlusion_testing(world, camera, primitives, first, units, symmetric, first_
     words (units,) are modes as the last frame left them: what is hidden matters of those alone that are not
     FULLY_RENDERED.  With `symmetric` the reference pixel's ray is also tested against the current unit.
     """
-    world, primitives, words, hidden = borrowed(world), borrowed(primitives), borrowed(words), borrowed(hidden)
-    first, units = borrowed(first), borrowed(units)
+    world, primitives, words, hidden = without_refcount((world, primitives, words, hidden))
+    first, units = without_refcount((first, units))
     height, width = primitives.shape
     spare, tests = local_memory(64), 0
     for y in range(first_row, last_row):

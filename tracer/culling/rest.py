@@ -68,7 +68,7 @@ class Rest:
         self._poses: Poses | None = None
         self._shapes: dict[int, NDArray[np.float32]] = {}
 
-    def follow(self, poses: Poses, primitives: Primitives, certain: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    def update(self, poses: Poses, primitives: Primitives, certain: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """(n,) whether each object rests, as it is posed and shaped in a further frame; only those that are `certain`
         (n,) do (`World.certain`)."""
         rests = poses.present & certain

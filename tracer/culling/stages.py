@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.runtime.kernels import inlined
-from tracer.simd import address_of, call_entry, load_i64, store
+from tracer.simd import address_of, call_native, load_i64, store
 from tracer.simd.records import I32, F32x2D, block_size, reading, writing
 
 # Columns of the table: addresses of the seven kernels, 0 for none, and of the stage's data, and the first of its rows
@@ -89,10 +89,10 @@ CALL = block_size(Call)
 def run_stages(stages, which, call, light, count, counts):
     """Call one of the seven kernels of every stage that has it."""
     for k in range(len(stages.table)):
-        entry = stages.table[k, which]
-        if entry != 0:
+        callback = stages.table[k, which]
+        if callback != 0:
             store(call, stages.table[k, FIRST_ROW])
-            call_entry(entry, stages.table[k, DATA], call, np.int64(light), np.int64(count), address_of(counts))
+            call_native(callback, stages.table[k, DATA], call, np.int64(light), np.int64(count), address_of(counts))
 
 
 @inlined

@@ -378,8 +378,9 @@ class Experiment(Run[Results]):
             label = f"frame {number - self.numbers.start + 1} of {len(self.numbers)}, {title_of(method)}"
             self.progressed(label, frame if method == self.shown else None)
 
+        self.make_ready(self.methods, scene, self.settings.accelerator, cancel)
         fits = world is not None and world.accelerator == self.settings.accelerator
-        return run(
+        yield from run(
             scene, self.settings, self.methods, self.times, self.numbers, cancel=cancel,
             world=world if fits else None, on_frame=on_frame,
         )  # fmt: skip

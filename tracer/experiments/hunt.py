@@ -136,7 +136,8 @@ class Hunt(Run[Results]):
         super().__init__(scene, search.frames)
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Results]:
-        return run(scene, self.search, cancel, world, self.progressed)
+        self.make_ready([self.settings.method], scene, self.settings.accelerator, cancel)
+        yield from run(scene, self.search, cancel, world, self.progressed)
 
     def copy(self, results: Results) -> Results:
         return replace(results, finds=list(results.finds))

@@ -12,13 +12,14 @@ import secrets
 from collections import Counter, OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from typing import Any
 
 from filelock import FileLock
 
-from tracer.compiling.compilation import compiled_before, is_first, make_ready, ready_for, warm_up
+from tracer.compiling.compilation import compiled_before, is_first, make_all_ready, ready_for
 from tracer.experiments.cluster import Cluster, in_one_line
 from tracer.geometry.world import World
 from tracer.runtime.kernel_cache import cache_root
@@ -197,13 +198,9 @@ def world_of(scene: Scene, code: str, accelerator: str, start: float) -> World:
 
 def prepare(lights: int, accelerator: str, method: str) -> None:
     """Make ready the kernels; of the processes that share a cache, one compiles and the others wait for it."""
-    picture_only = is_first(method)
-    if compiled_before(lights, accelerator, picture_only) and ready_for(method, lights, accelerator):
-        warm_up(None, lights, accelerator, picture_only)
-        return
-    with FileLock(cache_root() / "sweep.lock"):
-        warm_up(None, lights, accelerator, picture_only)
-        make_ready(method, lights, accelerator)
+    kept = compiled_before(lights, accelerator, is_first(method)) and ready_for(method, lights, accelerator)
+    with nullcontext() if kept else FileLock(cache_root() / "sweep.lock"):
+        make_all_ready([method], lights, accelerator)
 
 
 def check_program(version: str, tracer: str) -> None:

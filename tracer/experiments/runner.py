@@ -10,13 +10,14 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from bisect import bisect_left
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
 from itertools import pairwise
 from pathlib import Path
 from statistics import median
 from typing import Generic, TypeVar
 
+from tracer.compiling.compilation import make_all_ready
 from tracer.editing.edits import Origin
 from tracer.frame import Frame
 from tracer.geometry.world import World
@@ -49,7 +50,7 @@ class Run(ABC, Generic[Results]):
     frames, traced : int
         How many frames there are to trace, and how many have been.
     label, label_shown : str
-        Which frame was traced last, and which `take` gave last.
+        Which frame was traced last, or what is compiled before the first, and which frame `take` gave last.
     results : Results or None
         What nothing changes any more, None before the first whole frame.
     output : Path or None
@@ -123,6 +124,18 @@ class Run(ABC, Generic[Results]):
             self._scene = None
             self.done = True
             wake()
+
+    def make_ready(self, methods: Iterable[str], scene: Scene, accelerator: str, cancel: Callable[[], bool]) -> None:
+        """Compile what the methods need, which `label` says meanwhile; raises Cancelled."""
+
+        def report(what: str, fraction: float) -> None:
+            self.label = what
+            self._wake()
+            if cancel():
+                raise Cancelled
+
+        make_all_ready(methods, len(scene.lights), accelerator, report)
+        self.label = STARTING
 
     def progressed(self, label: str, frame: Frame | None = None) -> None:
         """Count a frame that has been traced, in words, and show it to whoever takes frames."""

@@ -310,8 +310,9 @@ class ZoomTest(Run[Results]):
             self._record(factor, number, frame)
             self.progressed(f"zoom factor {factor:g}, step {number} of {self.steps_each - 1}", frame)
 
+        self.make_ready([self.settings.method], scene, self.settings.accelerator, cancel)
         steps = self.steps_each - STILL_FRAMES
-        return run(scene, self.settings, self.start, self.factors, steps, self.ratio, cancel, world, on_frame)
+        yield from run(scene, self.settings, self.start, self.factors, steps, self.ratio, cancel, world, on_frame)
 
     def copy(self, results: Results) -> Results:
         return replace(results, approaches=[replace(a, steps=list(a.steps)) for a in results.approaches])

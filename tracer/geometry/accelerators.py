@@ -6,4 +6,4 @@ from __future__ import annotations
 # of rays.
 KD_TREE, LAZY, BVH8 = "kdtree", "kdtree-lazy", "bvh8"
 ACCELERATORS = (KD_TREE, LAZY, BVH8)
-MOST_TOGETHER = 128  # rays that go through a tree side by side
+MAX_PACKET_SIZE = 128  # rays that go through a tree side by side

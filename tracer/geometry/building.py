@@ -13,7 +13,6 @@ from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.model import Progress
 
 CANCELLED, DONE = 0, 1  # entries of a build's `control` (2,) int64: set to stop it; how much it has done
-NO_CONTROL = np.zeros(2, np.int64)  # of what nobody stops
 CHUNK = 1 << 12  # blocks or triangles that a thread takes at a time
 LONG = 5000  # primitives; what has fewer is built in no time
 T = TypeVar("T")

@@ -1,7 +1,7 @@
 """Memory without reference counts, for kernels.
 
 numba counts references to arrays, atomically, wherever one is passed on or taken out of a tuple.  In an inner loop that
-costs more than a step through a tree, and threads fight over shared counts.  `borrowed` gives the same arrays
+costs more than a step through a tree, and threads fight over shared counts.  `without_refcount` gives the same arrays
 uncounted, and `data_pointer` an array's bare memory.  Either is valid only as long as somebody else keeps the arrays
 alive: a kernel may borrow what it was called with.
 """
@@ -52,13 +52,25 @@ def _without_counts(context: Any, builder: Any, kind: Any, value: Any) -> Any:
 
 
 @operation
-def borrowed(typingctx, data):
+def without_refcount(typingctx, data):
     """The same array, or tuple of arrays, tuples and numbers, with no reference counted."""
 
     def codegen(context, builder, signature, args):
         return _without_counts(context, builder, signature.args[0], args[0])
 
     return data(data), codegen
+
+
+@operation
+def keep_alive(typingctx, data):
+    """Let an array, or a tuple of arrays, live until here.
+
+    numba frees an array after the last line that names it, even where others still have its address."""
+
+    def codegen(context, builder, signature, args):
+        return context.get_dummy_value()
+
+    return types.void(data), codegen
 
 
 def _local(dtype):

@@ -1,7 +1,7 @@
 """The two queries on a placed world, closest hits and any hits, whichever acceleration structure is below.
 
 The queries of a structure are machine code.  They are compiled once and called by address, so that shading is compiled
-without them and need not know which structure it calls.  A structure has two entries,
+without them and need not know which structure it calls.  A structure has two callbacks,
 
     closest(data, batch, first, last, counts)
     any_hit(data, batch, first, last, counts)
@@ -22,7 +22,7 @@ from tracer.geometry.intersect import hit_quadric, hit_triangle, transform_ray
 from tracer.geometry.memory import data_pointer
 from tracer.geometry.rays import INFINITY, Hits, RayPointers, Rays
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import address_of, call_entry, f32_at, local_memory
+from tracer.simd import address_of, call_native, f32_at, local_memory
 from tracer.simd.records import block_size, pack, reading, writing
 
 STATIC_GEOMETRY, DYNAMIC_OBJECTS = 1, 2
@@ -36,7 +36,7 @@ class Placed(NamedTuple):
     triangles (t, 9) and quadrics (q, 16) float32 are in the space of their object; to_object (objects, 12)
     float32 takes the world there.  Triangle i is primitive i, and quadric j is primitive t + j; object_of
     (t + q,) int32 tells the object of each primitive, and object 0 is static.  closest and any_hit are the
-    addresses of the structure's entries, and data is their first argument.  has_dynamic says whether any
+    addresses of the structure's callbacks, and data is their first argument.  has_dynamic says whether any
     object moves (and does not rest), and moving_box (6,) float32 is around all that do.
     """
 
@@ -52,7 +52,7 @@ class Placed(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """What an entry traces, all of it addresses but for two numbers.
+    """What a callback traces, all of it addresses but for two numbers.
 
     Rays: origins and directions, (3, stride) float32, t_min and t_max.  Results of closest hits: t, primitive, u and v.
     Any hits: a byte for what blocks each ray, `which` of STATIC_GEOMETRY and DYNAMIC_OBJECTS is asked, and the
@@ -77,13 +77,13 @@ read_batch, _write_batch = reading(Batch), writing(Batch)
 
 
 @inlined
-def _call(entry, data, rays, t, primitive, u, v, blocked, which, occluders, first, last, counts):
-    """Call an entry for rays and results that are addresses."""
+def _call(callback, data, rays, t, primitive, u, v, blocked, which, occluders, first, last, counts):
+    """Call a callback for rays and results that are addresses."""
     batch = local_memory(BATCH)
     origin, direction = address_of(rays.origin), address_of(rays.direction)
     t_min, t_max, stride = address_of(rays.t_min), address_of(rays.t_max), rays.origin.shape[1]
     _write_batch(batch, Batch(origin, direction, t_min, t_max, stride, t, primitive, u, v, blocked, which, occluders))
-    call_entry(entry, data, batch, first, last, address_of(counts))
+    call_native(callback, data, batch, first, last, address_of(counts))
 
 
 @inlined
@@ -125,7 +125,7 @@ def batch_of(
     which: int = EVERYTHING,
     occluders: NDArray[np.int32] | None = None,
 ) -> NDArray[np.int64]:
-    """A batch as a block, (12,) int64, for an entry that Python calls; the arrays must live as long as it does."""
+    """A batch as a block, (12,) int64, for a callback that Python calls; the arrays must live as long as it does."""
 
     def at(array: NDArray | None) -> int:
         return 0 if array is None else array.ctypes.data

@@ -17,7 +17,7 @@ from llvmlite import ir
 from numba.core import types
 
 from tracer.runtime.kernels import inlined, kernel
-from tracer.simd import address_of, call_entry
+from tracer.simd import address_of, call_native
 from tracer.simd.vectors import operation
 
 WORD = ir.IntType(64)
@@ -96,11 +96,11 @@ def add_shared(typingctx, address, value):
 def built(word, build, what, pause):
     """The word at an address, once what it stands for is there.
 
-    `build` is the address of what builds it: an entry that is given `what`, and `pause`, the address of what lets
+    `build` is the address of what builds it: a callback that is given `what`, and `pause`, the address of what lets
     other threads go on, or 0."""
     found = read_shared(word)
     while found < 0:
-        call_entry(build, what, pause, 0, 0, 0)
+        call_native(build, what, pause, 0, 0, 0)
         found = read_shared(word)
     return found
 

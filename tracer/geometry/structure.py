@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from tracer.geometry.poses import Poses
 from tracer.geometry.primitives import Primitives, WorldTriangles
 from tracer.geometry.queries import Placed
-from tracer.geometry.tree_parts import TreeParts
-from tracer.runtime.kernels import Entry
+from tracer.runtime.kernels import NativeCallback
 from tracer.scene.arrays import Float32, Float64
 
 
@@ -74,11 +73,11 @@ class Structure(Protocol):
     `together` is how many rays may go through a tree side by side: 128, 16, or 1; set before a world is placed.
     """
 
-    closest: Entry
-    any_hit: Entry
+    closest: NativeCallback
+    any_hit: NativeCallback
     hit_padding: float
     extent: float
-    together: int
+    max_packet_size: int
 
     def place(self, poses: Poses, resting: NDArray[np.bool_]) -> Placed:
         """Move all present objects to their poses; `resting` (objects,) tells which count as static geometry."""
@@ -94,9 +93,6 @@ class Structure(Protocol):
 
     def built(self) -> BuiltPart | None:
         """How much of it rays have had built so far; None for a structure that is built before they come."""
-
-    def parts_built(self) -> TreeParts | None:
-        """What rays have had built so far, and where; None where `built` is None."""
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is placed; inverted for an empty world."""

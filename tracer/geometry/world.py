@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY, MOST_TOGETHER
+from tracer.geometry.accelerators import ACCELERATORS, BVH8, KD_TREE, LAZY, MAX_PACKET_SIZE
 from tracer.geometry.boxes import NO_BOX
 from tracer.geometry.bvh8 import subtrees
 from tracer.geometry.bvh8.structure import Bvh8
@@ -23,8 +23,7 @@ from tracer.geometry.primitives import Outlines, Primitives, WorldTriangles
 from tracer.geometry.queries import EVERYTHING, batch_of
 from tracer.geometry.rays import Hits, Rays
 from tracer.geometry.structure import BuiltPart, Structure
-from tracer.geometry.tree_parts import TreeParts
-from tracer.runtime.kernels import Entry
+from tracer.runtime.kernels import NativeCallback
 from tracer.runtime.parallel import for_each_chunk, thread_count
 from tracer.scene.animation import Chains
 from tracer.scene.model import Cancelled, Progress, Scene
@@ -112,7 +111,7 @@ class World:
         return poses_at(self._chains, self.primitives.boxes, time)
 
     def place(
-        self, when: float | Poses, resting: NDArray[np.bool_] | None = None, together: int = MOST_TOGETHER
+        self, when: float | Poses, resting: NDArray[np.bool_] | None = None, max_packet_size: int = MAX_PACKET_SIZE
     ) -> None:
         """Move the dynamic objects to where they are.
 
@@ -126,7 +125,7 @@ class World:
             Rays that may go through a tree side by side, 128, 16 or 1. The answers are the same; a structure that
             traces rays one by one takes no note of it.
         """
-        self.structure.together = together
+        self.structure.max_packet_size = max_packet_size
         self._poses = poses = when if isinstance(when, Poses) else self.pose(when)
         rest = np.zeros_like(poses.present) if resting is None else poses.present & resting
         rest[0] = False  # what never moves is in a tree of its own
@@ -269,7 +268,7 @@ class World:
         return found, self._ask_each(self.structure.any_hit, batch, n, cancelled)
 
     def _ask_each(
-        self, query: Entry, batch: NDArray[np.int64], n: int, cancelled: Callable[[], bool] | None
+        self, query: NativeCallback, batch: NDArray[np.int64], n: int, cancelled: Callable[[], bool] | None
     ) -> NDArray[np.int64]:
         counts = np.zeros((n, 2), np.int64)
         data, described, counted = self.placed.data, batch.ctypes.data, counts.ctypes.data
@@ -279,7 +278,7 @@ class World:
             query.call(data, described, i, i + 1, counted + 16 * i)
         return counts
 
-    def _ask(self, query: Entry, batch: NDArray[np.int64], n: int, threads: int) -> None:
+    def _ask(self, query: NativeCallback, batch: NDArray[np.int64], n: int, threads: int) -> None:
         counts = np.zeros((thread_count(threads), 2), np.int64)
         data, described, counted = self.placed.data, batch.ctypes.data, [c.ctypes.data for c in counts]
 
@@ -296,10 +295,6 @@ class World:
     def built(self) -> BuiltPart | None:
         """How much of the trees rays have had built so far; None where all are built before rays come."""
         return self.structure.built()
-
-    def parts_built(self) -> TreeParts | None:
-        """What rays have had built so far, and where; None where all is built before rays come."""
-        return self.structure.parts_built()
 
     def bounds(self) -> NDArray[np.float32]:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.cells import hits_unit
+from tracer.geometry.as_python import as_python
 from tracer.geometry.camera import Pinhole, primary_ray
-from tracer.geometry.interpreted import interpreted
 from tracer.geometry.queries import Placed
 from tracer.geometry.rays import MISS
 
-_ray, _hits_unit = interpreted(primary_ray), interpreted(hits_unit)
+_ray, _hits_unit = as_python(primary_ray), as_python(hits_unit)
 _LEFT, _UPPER, _RIGHT, _LOWER = (-1, 0), (0, -1), (1, 0), (0, 1)
 
 Pixel = tuple[int, int]

@@ -17,7 +17,7 @@ from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.geometry.memory import aligned_rows
 from tracer.methods.interface import Stage
-from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.kernels import kernel, native_callback
 from tracer.scene.arrays import Float32
 from tracer.shading.bounce import next_wave
 from tracer.shading.points import LIFTED_ROW, LIGHT_ROW, POINT_ROWS, POSITION_ROW, Points, points_in
@@ -85,7 +85,7 @@ class Watch(NamedTuple):
 watch_at = reading(Watch)
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """Which points of the wave are the pixel's?"""
     given, watch = call_at(call), watch_at(data)
@@ -108,7 +108,7 @@ def find(data, call, light, count, counts):
     seen.state[END] = row
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Note which of the pixel's shadow rays have been answered."""
     given, watch = call_at(call), watch_at(data)
@@ -132,7 +132,7 @@ def choose(data, call, light, count, counts):
             batch.lit[seen.lane[row] >> 4] |= np.int32(seen.given[row, sample]) << np.int32(seen.lane[row] & 15)
 
 
-@entry
+@native_callback
 def finish(data, call, light, count, counts):
     """Note the light that goes from the pixel's points."""
     given, seen = call_at(call), watch_at(data).seen

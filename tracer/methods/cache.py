@@ -15,7 +15,7 @@ from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.simd import i64_at
 from tracer.simd.records import I32, F32x2D, reading
@@ -39,7 +39,7 @@ cache_at = reading(Cache)
 SLOT_ROWS = 1
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Rays that a cached occluder surely blocks need not be traced."""
     given, cache = call_at(call), cache_at(data)
@@ -47,7 +47,7 @@ def choose(data, call, light, count, counts):
     test_slots(cache, given.tile, points, given.samples[given.sample], light, count, batch, slots, i64_at(counts))
 
 
-@entry
+@native_callback
 def learn(data, call, light, count, counts):
     """Remember what has blocked the rays that were traced."""
     given, cache = call_at(call), cache_at(data)

@@ -12,13 +12,13 @@ from tracer.culling.modes import point_modes_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.methods.interface import FrameView
 from tracer.methods.paper import Paper, modes_at
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, load_f32x16, load_i32x16, store
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """Which cell is each point of the wave in?  Its modes have not been looked up yet."""
     given, first = call_at(call), modes_at(data).first

@@ -16,7 +16,7 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.neighbours.area_lights.find_lamp_answers import find_answers
@@ -38,7 +38,7 @@ from tracer.neighbours.certified.requests import (
 from tracer.neighbours.certified.scheduler import CertificateScheduler
 from tracer.neighbours.certified.store import CertificateStore
 from tracer.neighbours.certified.view import view_at
-from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.kernels import kernel, native_callback
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
 from tracer.shading.wave import wave_in
@@ -50,7 +50,7 @@ from tracer.visibility.budget import Budget, Counts
 SET_UP, SET_UP_LIGHT = 2e-6, 2e-7  # seconds for each primitive, and for each of these and each light
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """In which cell does the shadow ray of each point end?"""
     given, certified = call_at(call), view_at(data)
@@ -60,7 +60,7 @@ def find(data, call, light, count, counts):
         record_cells(wave_in(given.rays, count), found, given.place, certified.cell)
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Answer rays by certificates, and those of lamps by beams; candidates are asked where packets of primary hits'
     rays are not quicker."""
@@ -76,7 +76,7 @@ def choose(data, call, light, count, counts):
     cull_by_certificates(certified, points, found, position, light, count, asks, batch, i64_at(counts))
 
 
-@entry
+@native_callback
 def finish(data, call, light, count, counts):
     """Note what a wave has missed; what primary hits miss is requested before they are shaded."""
     given, certified = call_at(call), view_at(data)
@@ -91,7 +91,7 @@ def request_in_tiles(view, camera, tiles, numbers, lights, buffers):
 
     Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `view` is the address of the
     certificates (`CertificateView`)."""
-    certified, buffers = view_at(view), borrowed(buffers)
+    certified, buffers = view_at(view), without_refcount(buffers)
     width, hits = np.int32(buffers.primitive.shape[1]), (buffers.primitive, buffers.u, buffers.v)
     for number in numbers:
         tile = tiles[number]
@@ -127,14 +127,14 @@ class CertifiedCells(ShadowMethod):
     def follows_rest(self) -> bool:
         return True
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         self.made_now = self.store is None
         if self.store is None:
             self.store = CertificateStore(
                 self.services.world, len(frame.lights), frame.workers, self.services.cost_model
             )
             self.scheduler = CertificateScheduler(self.store, self.services.clock)
-        self.store.follow(frame.shading.lamps, frame.resting, frame.workers)
+        self.store.update(frame.shading.lamps, frame.resting, frame.workers)
 
     def prepare(self, frame: FrameView) -> None:
         self.take_requests(frame, frame.settings.certificate_seconds)

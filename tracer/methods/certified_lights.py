@@ -18,14 +18,14 @@ from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
-from tracer.geometry.memory import aligned_rows, borrowed
+from tracer.geometry.memory import aligned_rows, without_refcount
 from tracer.geometry.rays import RAY_OFFSET
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.neighbours.area_lights.hidden_samples import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
 from tracer.neighbours.area_lights.recent_occluders import RecentOccluders, find_hidden, is_lamp
 from tracer.neighbours.regions.lookup import look, want_around
 from tracer.neighbours.regions.store import RegionStore, RegionView
-from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.kernels import kernel, native_callback
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.shading.points import points_in
@@ -56,14 +56,14 @@ class Selection(NamedTuple):
 selection_at = reading(Selection)
 
 
-@entry
+@native_callback
 def select(data, call, light, count, counts):
     """Which lights must each vector of points look at?"""
     given, selection = call_at(call), selection_at(data)
     look(selection.regions, points_in(given.points), count, selection.looks)
 
 
-@entry
+@native_callback
 def approach(data, call, light, count, counts):
     """Find from which points a lamp is hidden, and pass over it where that is all of them."""
     given, selection = call_at(call), selection_at(data)
@@ -79,7 +79,7 @@ def approach(data, call, light, count, counts):
                 looks[light, v >> 6] &= ~(np.int64(1) << (v & 63))
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Answer those rays of a lamp's sample that are certainly blocked."""
     given, selection = call_at(call), selection_at(data)
@@ -94,7 +94,7 @@ def want_in_tiles(selection, camera, tiles, numbers, buffers):
 
     Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `selection` is the address of a
     `Selection`."""
-    regions, buffers = selection_at(selection).regions, borrowed(buffers)
+    regions, buffers = selection_at(selection).regions, without_refcount(buffers)
     width, primitives, depths = np.int32(buffers.primitive.shape[1]), buffers.primitive, buffers.depth
     eye = camera.origin
     largest = max(abs(eye[0]), max(abs(eye[1]), abs(eye[2])))
@@ -125,11 +125,11 @@ class CertifiedLights(ShadowMethod):
     def begin(self, frame: FrameView) -> None:
         self._counts = Counts()
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         self.made_now = self.store is None
         if self.store is None:
             self.store = RegionStore(self.services.world, frame.shading.lamps, self.services.clock)
-        self.store.follow(frame.shading.lamps)
+        self.store.update(frame.shading.lamps)
 
     def prepare(self, frame: FrameView) -> None:
         self.certify(frame, frame.settings.certificate_seconds)

@@ -18,7 +18,7 @@ from tracer.culling.counters import CULLED
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, vectors
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.simd import i64_at, ones
 from tracer.simd.records import I32x2D, I64x2D, reading
 from tracer.statistics import FrameStatistics
@@ -38,7 +38,7 @@ class Answers(NamedTuple):
 answers_at = reading(Answers)
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """A tile's first wave begins at the first of its answers."""
     given, answers = call_at(call), answers_at(data)
@@ -46,7 +46,7 @@ def find(data, call, light, count, counts):
         answers.at[given.tile, 0] = 0
 
 
-@entry
+@native_callback
 def record(data, call, light, count, counts):
     """Write the answers of a wave; where there is no room only their number is kept."""
     given, answers = call_at(call), answers_at(data)
@@ -58,7 +58,7 @@ def record(data, call, light, count, counts):
     answers.at[given.tile, 0] = first + vectors(count)
 
 
-@entry
+@native_callback
 def replay(data, call, light, count, counts):
     """Answer all rays of a wave, dynamic objects included."""
     given, answers = call_at(call), answers_at(data)
@@ -71,7 +71,7 @@ def replay(data, call, light, count, counts):
     answers.at[given.tile, 0] = first + vectors(count)
 
 
-@entry
+@native_callback
 def restore(data, call, light, count, counts):
     """Say what static geometry has answered, for modes that are kept beside; `replay` has moved on by now."""
     given, answers = call_at(call), answers_at(data)

@@ -27,10 +27,10 @@ from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.rest import Resting
 from tracer.culling.stages import COLUMNS, Stages
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.geometry.accelerators import MOST_TOGETHER
+from tracer.geometry.accelerators import MAX_PACKET_SIZE
 from tracer.geometry.camera import Pinhole
 from tracer.neighbours.certified.cost_model import CostModel
-from tracer.runtime.kernels import Entry
+from tracer.runtime.kernels import NativeCallback
 from tracer.shading.buffers import Buffers
 from tracer.shading.shading_data import ShadingData
 from tracer.simd.records import pack
@@ -93,16 +93,16 @@ class Stage:
 
     data: NamedTuple | None = None
     _: KW_ONLY
-    find: Entry | None = None
-    select: Entry | None = None
-    approach: Entry | None = None
-    choose: Entry | None = None
-    learn: Entry | None = None
-    finish: Entry | None = None
+    find: NativeCallback | None = None
+    select: NativeCallback | None = None
+    approach: NativeCallback | None = None
+    choose: NativeCallback | None = None
+    learn: NativeCallback | None = None
+    finish: NativeCallback | None = None
     rows: int = 0
     occluders: bool = False
     looks: NDArray[np.int64] | None = None
-    shade: Entry | None = None
+    shade: NativeCallback | None = None
 
 
 class ShadowMethod:
@@ -111,7 +111,7 @@ class ShadowMethod:
     #: Other methods that this one is made of, which live as long as it does.
     parts: tuple[ShadowMethod, ...] = ()
     #: How many rays may go through a tree side by side in its frames (`tracer.geometry.world.World.place`).
-    together: int = MOST_TOGETHER
+    max_packet_size: int = MAX_PACKET_SIZE
 
     def __init__(self, services: Services) -> None:
         self.services = services
@@ -129,7 +129,7 @@ class ShadowMethod:
         """Whether objects that rest are to count as static in this frame."""
         return False
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         """Drop what no longer holds where objects and lights are now."""
 
     def prepare(self, frame: FrameView) -> None:

@@ -18,14 +18,14 @@ from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.camera import primary_direction
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
 from tracer.neighbours.environments.ask import answer, find_cells, select_lights
 from tracer.neighbours.environments.octree import cells_at, environments_at
 from tracer.neighbours.environments.sample import seen_points, settle_by_samples
 from tracer.neighbours.environments.store import EnvironmentStore
-from tracer.runtime.kernels import entry, kernel
+from tracer.runtime.kernels import kernel, native_callback
 from tracer.runtime.parallel import for_each_chunk
 from tracer.shading.points import points_in
 from tracer.shading.primary import block_at, blocks_of
@@ -50,7 +50,7 @@ CELL_ROWS = 1
 WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """In which cell does the shadow ray of each point end?"""
     given, environments, cells = call_at(call), environments_at(data), scratch_of(call_at(call))[0].view(np.int32)
@@ -61,7 +61,7 @@ def find(data, call, light, count, counts):
             environments.cell[given.place[wave.pixel[i]]] = cells[i]
 
 
-@entry
+@native_callback
 def select(data, call, light, count, counts):
     """Which lights must each vector of points look at?"""
     given, environments = call_at(call), environments_at(data)
@@ -69,7 +69,7 @@ def select(data, call, light, count, counts):
         select_lights(environments, count, scratch_of(given)[0].view(np.int32))
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Answer the rays to a light whose blockers are known."""
     given, environments = call_at(call), environments_at(data)
@@ -86,7 +86,7 @@ def want_in_tiles(data, camera, tiles, numbers, buffers):
 
     Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `data` is the address of an
     `EnvironmentView`."""
-    environments, buffers, lanes = environments_at(data), borrowed(buffers), local_memory(64)
+    environments, buffers, lanes = environments_at(data), without_refcount(buffers), local_memory(64)
     width, primitives, depths, eye = (
         np.int32(buffers.primitive.shape[1]),
         buffers.primitive,
@@ -120,7 +120,7 @@ class Environments(CellsOfSpace):
     store: EnvironmentStore | None
     coarse = 0  # how often cells are divided at most, 0 for as often as is worth it
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         settings, lamps = frame.settings, frame.shading.lamps
         if self.store is None or self._memory != settings.certificate_memory:
             memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
@@ -129,7 +129,7 @@ class Environments(CellsOfSpace):
             self.store = EnvironmentStore(world, lamps, frame.workers, memory, by_ray, clock, self.coarse)
             self._memory = settings.certificate_memory
         self.store.keep_within()
-        self.store.follow(lamps, frame.resting)
+        self.store.update(lamps, frame.resting)
 
     def prepare(self, frame: FrameView) -> None:
         store, settings = self.store, frame.settings

@@ -43,7 +43,7 @@ from tracer.neighbours.lightbuffer.moving import SIDE as MOVING_SIDE
 from tracer.neighbours.lightbuffer.moving import depths_of
 from tracer.neighbours.lightbuffer.rays import RAY_ROWS, buffer_rays_in
 from tracer.neighbours.lightbuffer.tell import LightCube, Said, tell
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.simd import i64_at
 from tracer.simd.records import reading
@@ -58,7 +58,7 @@ GROWTH = 4  # times that what moves may grow before boxes of what rests no longe
 buffers_at = reading(LightBuffers)
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Answer the rays that the light's buffers tell about."""
     given, buffers = call_at(call), buffers_at(data)
@@ -101,7 +101,7 @@ class LightBuffer(ShadowMethod):
     def follows_rest(self) -> bool:
         return True
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         """Drop the buffers of lights that have moved, and what rested otherwise."""
         lamps, before = frame.shading.lamps, self._last
         points = np.diff(lamps.first) == 1

@@ -17,7 +17,7 @@ from tracer.culling.stages import call_at, vectors
 from tracer.geometry.memory import aligned_rows
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
 from tracer.methods.method_limits import lights_in_words
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.scene.lights import Lamps
 from tracer.shading.lightcuts.block import BLOCK, DARK, POINTS, ROOM, Clusters, CutWork
 from tracer.shading.lightcuts.drawn import Draws
@@ -39,7 +39,7 @@ NO_DRAWS = Draws(np.empty((0, 2), np.int32), _NO_INTS, _NONE, _NONE, np.empty((0
 cuts_at = reading(Cuts)
 
 
-@entry
+@native_callback
 def shade(data, call, light, count, counts):
     """Add the light of all lights to a wave's points, block by block."""
     given, cuts = call_at(call), cuts_at(data)
@@ -64,7 +64,7 @@ class Lightcuts(ShadowMethod):
         self._asked = frame.settings.lightcuts_error
         self._errors: CutErrors | None = None
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         lamps, before = frame.shading.lamps, self._lamps
         if before is None or not all(np.array_equal(a, b) for a, b in zip(lamps, before, strict=True)):
             self._lamps = lamps

@@ -17,7 +17,7 @@ from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.lightcuts import Lightcuts
 from tracer.neighbours.regions.lookup import look
 from tracer.neighbours.regions.store import RegionView
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.shading.lightcuts.block import BLOCK, Clusters
 from tracer.shading.lightcuts.hidden import leave_out_hidden, see
 from tracer.shading.lightcuts.shade import Cuts, block_at, shade_by_cut
@@ -43,7 +43,7 @@ class CertifiedCuts(NamedTuple):
 certified_cuts_at = reading(CertifiedCuts)
 
 
-@entry
+@native_callback
 def shade(data, call, light, count, counts):
     """Add the light of all lights to a wave's points, block by block, by cuts of those that may be visible."""
     given, certified = call_at(call), certified_cuts_at(data)
@@ -74,10 +74,10 @@ class CertifiedLightcuts(Lightcuts):
         super().begin(frame)
         self._certified.begin(frame)
 
-    def follow(self, frame: FrameView) -> None:
-        super().follow(frame)
+    def invalidate(self, frame: FrameView) -> None:
+        super().invalidate(frame)
         if self._shades(frame):
-            self._certified.follow(frame)
+            self._certified.invalidate(frame)
 
     def prepare(self, frame: FrameView) -> None:
         if self._shades(frame):

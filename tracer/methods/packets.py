@@ -12,10 +12,10 @@ from tracer.methods.interface import ShadowMethod
 class Packets16(ShadowMethod):
     """Rays go through a tree sixteen at a time."""
 
-    together = 16
+    max_packet_size = 16
 
 
 class Packets1(ShadowMethod):
     """Rays go through a tree one by one."""
 
-    together = 1
+    max_packet_size = 1

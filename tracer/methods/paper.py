@@ -30,7 +30,7 @@ from tracer.culling.shadow_testing import answer, classify_by_modes, shadow_batc
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.methods.interface import FrameView, ShadowMethod, Stage
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.simd import address_of, bits_of, i64_at, load_i32x16, lowest_bit, ones, store
 from tracer.simd.records import I32, reading
@@ -48,7 +48,7 @@ class Modes(NamedTuple):
 modes_at = reading(Modes)
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """Which primitive is each point of the wave on?  Its modes have not been looked up yet."""
     given = call_at(call)
@@ -58,7 +58,7 @@ def find(data, call, light, count, counts):
         store(address_of(found.unit) + 64 * v, load_i32x16(address_of(points.primitive) + 64 * v))
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """§2.4: answer the rays of points on units whose modes say what they meet."""
     given, words, counted = call_at(call), modes_at(data).words, i64_at(counts)
@@ -72,7 +72,7 @@ def choose(data, call, light, count, counts):
             answer(batch, v, skip, dynamic_only, counted)
 
 
-@entry
+@native_callback
 def learn(data, call, light, count, counts):
     """§2.5: OR what rays have met into what units gain, and count what modes say of due rays.
 

@@ -25,14 +25,14 @@ from tracer.neighbours.voxels.store import VoxelStore
 from tracer.neighbours.voxels.tell import Stop
 from tracer.neighbours.voxels.view import voxel_view_at
 from tracer.neighbours.voxels.walk import full_and_null, walk
-from tracer.runtime.kernels import entry
+from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
 from tracer.simd import address_of, bits_of, i32x16, i64_at, load_i32x16, load_three, mask16, ones, select, store
 from tracer.visibility.grid import cubes_at
 
 
-@entry
+@native_callback
 def find(data, call, light, count, counts):
     """In which voxel does the shadow ray of each point end?"""
     given, voxels = call_at(call), voxel_view_at(data)
@@ -48,7 +48,7 @@ def find(data, call, light, count, counts):
             voxels.cell[given.place[wave.pixel[i]]] = found.unit[i]
 
 
-@entry
+@native_callback
 def choose(data, call, light, count, counts):
     """Answer the rays to a light of which voxels are known."""
     given, voxels = call_at(call), voxel_view_at(data)
@@ -90,14 +90,14 @@ class Voxels(CellsOfSpace):
 
     store: VoxelStore | None
 
-    def follow(self, frame: FrameView) -> None:
+    def invalidate(self, frame: FrameView) -> None:
         settings = frame.settings
         if self.store is None or self._memory != settings.certificate_memory:
             memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
             lights = len(frame.lights)
             self.store = VoxelStore(self.services.world, lights, frame.workers, memory, by_ray, self.services.clock)
             self._memory = settings.certificate_memory
-        self.store.follow(frame.shading.lamps, frame.resting)
+        self.store.update(frame.shading.lamps, frame.resting)
 
     def prepare(self, frame: FrameView) -> None:
         assert self.store is not None, "followed before"

@@ -35,10 +35,10 @@ def inlined(function: Callable) -> Any:
     return _njit(forceinline=True, **_LINKED)(function)
 
 
-_ENTRY: Any = types.void(*[types.int64] * 5)
+_SIGNATURE: Any = types.void(*[types.int64] * 5)
 
 
-class Entry:
+class NativeCallback:
     """Machine code that kernels call by address and Python by `call`: compiled, or loaded, when first wanted.
 
     The function takes five int64 and returns nothing (`tracer.geometry.queries`).
@@ -50,7 +50,7 @@ class Entry:
 
     @cached_property
     def _compiled(self) -> Any:
-        compiled = _cfunc(self._function, (_ENTRY.args, _ENTRY.return_type), {}, {"error_model": "numpy"})
+        compiled = _cfunc(self._function, (_SIGNATURE.args, _SIGNATURE.return_type), {}, {"error_model": "numpy"})
         compiled._cache = cache_of(self._function)
         compiled.compile()
         return compiled
@@ -68,6 +68,6 @@ class Entry:
         self._compiled.ctypes(data, batch, first, last, counts)
 
 
-def entry(function: Callable) -> Entry:
-    """Compile a structure's query (see `Entry`)."""
-    return Entry(function)
+def native_callback(function: Callable) -> NativeCallback:
+    """Compile a structure's query (see `NativeCallback`)."""
+    return NativeCallback(function)

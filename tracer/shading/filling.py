@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.geometry.rays import MISS
 from tracer.runtime.kernels import inlined, kernel
 from tracer.shading.blocks import (
@@ -169,23 +169,23 @@ def _filled(planes, shaded, row, column, foot, weights, asked):
             l0, l1, l2 = l0 + w * local[0], l1 + w * local[1], l2 + w * local[2]
             u0, u1, u2 = u0 + w * lit[0], u1 + w * lit[1], u2 + w * lit[2]
             s0, s1, s2 = s0 + w * sent[0], s1 + w * sent[1], s2 + w * sent[2]
-    seen, told = surface > np.int32(MISS), total > ZERO
-    scale = ONE / select(told, total, f32x16(ONE))
-    mean, told = mean * scale, told & seen
+    seen, estimated = surface > np.int32(MISS), total > ZERO
+    scale = ONE / select(estimated, total, f32x16(ONE))
+    mean, estimated = mean * scale, estimated & seen
     spread = square_root(maximum(square * scale - mean * mean, ZERO)) / (DARKNESS + mean)
     doubt = select(seen, spread + UNSEEN * (ONE - minimum(known * np.float32(4), ONE)), ZERO)
     arrived = _part(l0 + l1 + l2, u0 + u1 + u2, f32x16(ONE))
     return (
-        select(told, full[0] * _part(l0, u0, arrived) + s0 * scale, full[0]),
-        select(told, full[1] * _part(l1, u1, arrived) + s1 * scale, full[1]),
-        select(told, full[2] * _part(l2, u2, arrived) + s2 * scale, full[2]),
+        select(estimated, full[0] * _part(l0, u0, arrived) + s0 * scale, full[0]),
+        select(estimated, full[1] * _part(l1, u1, arrived) + s1 * scale, full[1]),
+        select(estimated, full[2] * _part(l2, u2, arrived) + s2 * scale, full[2]),
     ), doubt
 
 
 @kernel
 def _fill(planes, shaded, wanted, first, last, foot, weights, asked, color, filled, doubt):
-    planes, shaded, wanted = borrowed(planes), borrowed(shaded), borrowed(wanted)
-    color, filled, doubt = borrowed(color), borrowed(filled), borrowed(doubt)
+    planes, shaded, wanted = without_refcount(planes), without_refcount(shaded), without_refcount(wanted)
+    color, filled, doubt = without_refcount(color), without_refcount(filled), without_refcount(doubt)
     height, width = color.shape[:2]
     memory = local_memory(256)
     channel = f32_at(memory)

@@ -43,8 +43,8 @@ def record_fates(wave, light, batch, pixels, buffers):
             else:
                 fate = CULLED
         place = pixels.place[wave.pixel[i]]
-        told = buffers.fates[place, light]
-        buffers.fates[place, light] = max(told & FATE, fate) | (told & MOVING_SHADOW) | moving
+        before = buffers.fates[place, light]
+        buffers.fates[place, light] = max(before & FATE, fate) | (before & MOVING_SHADOW) | moving
 
 
 @subkernel

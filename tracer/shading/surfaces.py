@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.camera import primary_direction
-from tracer.geometry.memory import borrowed, data_pointer
+from tracer.geometry.memory import data_pointer, without_refcount
 from tracer.geometry.primitives import COLUMNS, MATERIAL, OBJECT
 from tracer.geometry.rays import MISS
 from tracer.runtime.kernels import inlined, kernel
@@ -70,7 +70,7 @@ def _unshadowed(shading, m, color, position, geometric, normal, direction, hit):
 def see_surfaces(world, shading, camera, tile, buffers):
     """Normals, surfaces and unshadowed light of a tile (left, top, right, bottom) whose primary hits the buffers
     hold, a block at a time."""
-    world, shading, buffers = borrowed(world), borrowed(shading), borrowed(buffers)
+    world, shading, buffers = without_refcount(world), without_refcount(shading), without_refcount(buffers)
     planes, normals, width = buffers.planes, data_pointer(buffers.normal), np.int32(buffers.primitive.shape[1])
     rows = local_memory(192)
     channel, background = f32_at(rows), shading.background

@@ -29,7 +29,7 @@ from tracer.culling.stages import (
     write_call,
     write_sample,
 )
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import keep_alive, without_refcount
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.shading.blocks import BLOCK, LOCAL, PLANE, SENT, block_of, planes_at
 from tracer.shading.bounce import next_wave
@@ -55,7 +55,7 @@ NUMBERS = PLANE // 4  # of a plane
 @kernel
 def trace_primary(world, camera, tile, lanes, buffers, counts, space):
     """Primary rays of a tile: depth, primitive and barycentric weights into the buffers."""
-    world, buffers, space = borrowed(world), borrowed(buffers), borrowed(space)
+    world, buffers, space = without_refcount(world), without_refcount(buffers), without_refcount(space)
     place = pixels_in(space.pixels).place
     wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, place)
     trace(world, wave, counts[PRIMARY:])
@@ -67,8 +67,8 @@ def trace_primary(world, camera, tile, lanes, buffers, counts, space):
 def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, counts, space):
     """Shade a tile whose primary hits the buffers hold, with at most `depth` bounces: the pixels whose bits are set in
     `lanes` (`primary_wave`)."""
-    world, shading, stages = borrowed(world), borrowed(shading), borrowed(stages)
-    buffers, space = borrowed(buffers), borrowed(space)
+    world, shading, stages = without_refcount(world), without_refcount(shading), without_refcount(stages)
+    buffers, space = without_refcount(buffers), without_refcount(space)
     pixels, spare = pixels_in(space.pixels), space.next
 
     # Start with what the primary rays have hit.
@@ -114,9 +114,7 @@ def shade_tile(world, shading, camera, tile, lanes, depth, stages, buffers, coun
 
 @subkernel
 def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, bounce, buffers, space):
-    """Local light of a wave, with shadow testing for every sample of every light.
-
-    Returns the memory that stages were given by address: numba frees an array after the last line that names it."""
+    """Local light of a wave, with shadow testing for every sample of every light."""
     counts, lamps = counts[SHADOW:], shading.lamps
     batch = shadow_batch_in(room(space.shadows, wave.size))
     scratch, call = room(space.scratch, wave.size), local_memory(CALL)
@@ -161,7 +159,7 @@ def _add_lights(world, shading, wave, points, stages, counts, pixels, tile, boun
     accumulate(wave, points.light, pixels.light)
     if stages.verify:
         accumulate(wave, points.reference, pixels.reference)
-    return scratch, batch.memory, counts
+    keep_alive((scratch, batch.memory, counts))
 
 
 @inlined
@@ -189,8 +187,8 @@ def _take_apart(pixels, count, buffers):
 @kernel
 def find_in_tile(world, shading, camera, tile, lanes, stages, buffers, space):
     """Let the stages find out what is known of a tile's primary hits, which the buffers hold, before it is shaded."""
-    world, shading, stages = borrowed(world), borrowed(shading), borrowed(stages)
-    buffers, space = borrowed(buffers), borrowed(space)
+    world, shading, stages = without_refcount(world), without_refcount(shading), without_refcount(stages)
+    buffers, space = without_refcount(buffers), without_refcount(space)
     pixels, uncounted = pixels_in(space.pixels), np.zeros(SHADOW_COUNTERS, np.int64)
     wave = primary_wave(camera, tile, buffers.primitive.shape[1], lanes, space.wave, pixels.place)
     read_hits(wave, pixels.place, buffers)
@@ -201,9 +199,9 @@ def find_in_tile(world, shading, camera, tile, lanes, stages, buffers, space):
 
 @subkernel
 def _find(shading, wave, points, stages, counts, pixels, tile, space):
-    """Call the stages' kernels for a new wave; returns the memory that they were given, as `_add_lights` does."""
+    """Call the stages' kernels for a new wave."""
     shadows, scratch, call = room(space.shadows, wave.size), room(space.scratch, wave.size), local_memory(CALL)
     samples = shading.lamps.samples
     write_call(call, Call(0, 0, 0, tile, 0, points.memory, wave.memory, shadows, scratch, samples, pixels.place))
     run_stages(stages, FIND, call, 0, wave.size, counts)
-    return shadows, scratch
+    keep_alive((shadows, scratch))

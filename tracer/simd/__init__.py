@@ -20,7 +20,7 @@ vectors that are wider than the processor's, so that everything runs everywhere.
 
 from tracer.simd.addresses import (
     address_of,
-    call_entry,
+    call_native,
     f32_at,
     i32_at,
     i64_at,

@@ -146,8 +146,8 @@ def mark(typingctx, address):
 
 
 @operation
-def call_entry(typingctx, entry, a, b, c, d, e):
-    """Call machine code (see `tracer.runtime.kernels.Entry`) at an address, with five int64."""
+def call_native(typingctx, callback, a, b, c, d, e):
+    """Call machine code (see `tracer.runtime.kernels.NativeCallback`) at an address, with five int64."""
 
     def codegen(context, builder, sig, args):
         kind = ir.FunctionType(ir.VoidType(), [ir.IntType(64)] * 5)

@@ -5,7 +5,7 @@ Two kinds of memory hold records.
 - *Rows.*  Many points or rays as a structure of arrays: a (rows, n) float32 array in which each field has one row, or
   three for a vector.  `rows_of` gives the kernel that names the rows, `row_count` how many there are, and `row_number`
   where a field's rows begin.
-- *Blocks.*  What code called by address is given (`tracer.runtime.kernels.Entry`): the addresses and shapes of arrays,
+- *Blocks.*  What a `NativeCallback` (`tracer.runtime.kernels`) is given: the addresses and shapes of arrays,
   and numbers, eight bytes each.  `pack` or the kernel of `writing` makes a block, and the kernel of `reading` reads it.
 
 A kernel that names the fields is made from the declaration, so that neither can fall out of step with the other.

@@ -59,7 +59,7 @@ class BoxQuestion(NamedTuple):
     half: Any
 
 
-class Room(NamedTuple):
+class Scratch(NamedTuple):
     """What a worker looks for candidates in.
 
     Attributes:
@@ -74,15 +74,15 @@ class Room(NamedTuple):
 
 
 @inlined
-def make_room():
+def make_scratch():
     """Memory for a worker."""
-    return Room(make_shaft(), np.zeros(LANES, np.int32), np.zeros(2, np.int64))
+    return Scratch(make_shaft(), np.zeros(LANES, np.int32), np.zeros(2, np.int64))
 
 
 @inlined
-def forget_occluders(room):
+def forget_occluders(scratch):
     """What is proved from now on does not depend on boxes that were asked about before."""
-    room.state[0] = room.state[1] = 0
+    scratch.state[0] = scratch.state[1] = 0
 
 
 @subkernel
@@ -107,7 +107,7 @@ classifies(BoxQuestion, classify_for_box)
 
 
 @subkernel
-def come_between(o, light, room, middle, half, rounded, given, given_count, found, counts):
+def come_between(o, light, scratch, middle, half, rounded, given, given_count, found, counts):
     """Find what may come between a light and the cube around middle (3,) with half sides `half`: how many primitives,
     more than MOST for too many, or HIDDEN where one hides the whole cube.
 
@@ -115,16 +115,16 @@ def come_between(o, light, room, middle, half, rounded, given, given_count, foun
     that is more than MOST; o are `Occluders`; rounded is more, in units of the scene, than planes are wrong by in
     float32."""
     place = np.float64(light.place[0]), np.float64(light.place[1]), np.float64(light.place[2])
-    put_box(room.shaft, place, middle, half, rounded)
+    put_box(scratch.shaft, place, middle, half, rounded)
     center = np.float32(middle[0]), np.float32(middle[1]), np.float32(middle[2])
-    question = BoxQuestion(o, light.slot, light, room.shaft, center, np.float32(half))
-    if room.state[0] > 0:  # what has hidden others may hide this one
-        counts[TESTS] += room.state[0]
-        hit, _missed = classify_for_box(question, address_of(room.occluders))
-        if hit & lanes_below(room.state[0], 0) != 0:
+    question = BoxQuestion(o, light.slot, light, scratch.shaft, center, np.float32(half))
+    if scratch.state[0] > 0:  # what has hidden others may hide this one
+        counts[TESTS] += scratch.state[0]
+        hit, _missed = classify_for_box(question, address_of(scratch.occluders))
+        if hit & lanes_below(scratch.state[0], 0) != 0:
             return np.int64(HIDDEN)
     count = find_candidates(question, given, given_count, found, MOST, counts)
     if count < 0:
-        room.occluders[room.state[1]] = found[0]
-        room.state[0], room.state[1] = min(LANES, room.state[0] + 1), (room.state[1] + 1) % LANES
+        scratch.occluders[scratch.state[1]] = found[0]
+        scratch.state[0], scratch.state[1] = min(LANES, scratch.state[0] + 1), (scratch.state[1] + 1) % LANES
     return count

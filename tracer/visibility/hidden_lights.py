@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.runtime.parallel import for_each_chunk
 from tracer.simd import address_of, bits_of, f32x16, load_f32x16, lowest_bit, maximum, minimum, ones
@@ -97,7 +97,7 @@ def leaves_left(tree, blockers, regions, starts, leaves, counts):
     Nodes are descended from those that are known to matter: starts (n, 2) int64 are the first and the last + 1 of each
     region's in leaves (m,) int32.  Returns (ends (n,) int64, found (k,) int32): the leaves of one region after those of
     another.  blockers are `Blockers`; counts (COUNTERS,) int64 are added to."""
-    tree, blockers = borrowed(tree), borrowed(blockers)
+    tree, blockers = without_refcount((tree, blockers))
     stack, recent = np.empty(STACK, np.int32), np.zeros(RECENT, np.int64)
     ends, found, end = np.empty(len(regions), np.int64), np.empty(FIRST_ROOM, np.int32), np.int64(0)
     for i in range(len(regions)):
@@ -129,7 +129,7 @@ def leaves_left(tree, blockers, regions, starts, leaves, counts):
 @kernel
 def first_blocker(blockers, region, lights):
     """The blocker that hides a box of lights from a region, the first of boxes (1, 6) float64 each; -1 for none."""
-    blockers, uncounted, recent = borrowed(blockers), np.zeros(COUNTERS, np.int64), np.zeros(RECENT, np.int64)
+    blockers, uncounted, recent = without_refcount(blockers), np.zeros(COUNTERS, np.int64), np.zeros(RECENT, np.int64)
     return blocker_of(blockers, hull_of(region, 0), hull_of(lights, 0), recent, uncounted)
 
 
@@ -152,7 +152,7 @@ class HiddenLights:
         self._proved, self._tree = self.boxes, build_light_tree(np.zeros((1, 6), np.float32))
         self.moved = np.empty(0, np.bool_)
 
-    def follow(self, boxes: NDArray[np.float32]) -> bool:
+    def update(self, boxes: NDArray[np.float32]) -> bool:
         """Lights are in these boxes (l, 6) now: whether all is to be proved anew."""
         before, self.boxes = self.boxes, boxes
         anew = boxes.shape != self._proved.shape

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
 from tracer.runtime.kernels import inlined, kernel, subkernel
@@ -209,7 +209,7 @@ def enlarge_boxes(o, number, light, radius, farthest, largest):
     """Fit all boxes, and the light-space triangles, to light `number`, a ball of a radius around light (3,) float32.
 
     No ray from it is longer than `farthest`, and no coordinate larger than `largest`, in units of the scene."""
-    o = borrowed(o)
+    o = without_refcount(o)
     boxes = o.boxes[number]
     _find_error_radii(o, number, light, radius, farthest, ROUNDED * largest)
     if radius == 0.0:  # rays test candidates of points alone

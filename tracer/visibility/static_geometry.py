@@ -115,7 +115,7 @@ class StaticGeometry:
         """No less than the distance of any point of a ball around light (3,) from any of bounds (2, 3)."""
         return (float(np.linalg.norm(np.abs(light - bounds).max(0))) + radius) * 1.001
 
-    def follow(self, started: NDArray[np.int64], stopped: NDArray[np.int64], outlines: Outlines) -> None:
+    def update(self, started: NDArray[np.int64], stopped: NDArray[np.int64], outlines: Outlines) -> None:
         """Let objects (k,) that have started no longer be static, and those that have stopped be static."""
         for index in started:
             del self._shapes[int(index)], self._bounds_of[int(index)]

@@ -31,7 +31,7 @@ from viewer.cli.arguments import FAILED, Parser
 from viewer.cli.console import Work, working
 from viewer.output import capture, exr
 from viewer.output.capture import Carried
-from viewer.output.commands import BUILT, CHANCE
+from viewer.output.commands import CHANCE
 from viewer.output.comparison import comparison_of, text_of_pdf
 from viewer.services import stills
 from viewer.services.scene_files import find_scene
@@ -220,7 +220,7 @@ class Checker:
 
 def _not_again(wanted: ViewState) -> str:
     """Why a picture cannot be made again, and how to save one that can."""
-    if wanted.warmup.unknown in (CHANCE, BUILT):
+    if wanted.warmup.unknown == CHANCE:
         way = "a picture of the view color can be made again" if Method.parse(wanted.settings.method).exact else ""
     else:
         way = "Backspace in the window forgets all modes: what is saved after it can be made again"

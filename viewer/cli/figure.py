@@ -57,8 +57,6 @@ def run(given: Namespace) -> int:
     check_writable(given.output)
     if view is View.CERTIFICATE:
         raise ValueError("figure: certificates are of one method alone; give another --view")
-    if view is View.TREE:
-        raise ValueError("figure: all methods share one tree; give another --view, or `render --view tree`")
     pictures.check_display(given)
     settings = options.tracing_settings(given)
     for method in given.methods:

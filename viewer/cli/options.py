@@ -9,7 +9,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from tracer.compiling.compilation import compiled_before, is_first, make_ready, warm_up
+from tracer.compiling.compilation import compiled_before, is_first, make_all_ready
 from tracer.editing.edits import NO_EDITS, Edits, edited
 from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES
 from tracer.geometry.accelerators import BVH8
@@ -261,9 +261,7 @@ def prepare_kernels(work: Work, lights: int, accelerator: str, *methods: str) ->
         always = "at every start, as the cache folder cannot be written to"
         often = "once for this version" if outlives_process() else always
         work.note(f"compiling the kernels, {often}; this takes a minute or less")
-    warm_up(work.progress, lights, accelerator, picture_only)
-    for name in methods:
-        make_ready(name, lights, accelerator, work.progress)
+    make_all_ready(methods, lights, accelerator, work.progress)
 
 
 def method_summaries() -> str:

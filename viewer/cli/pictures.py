@@ -6,8 +6,6 @@ from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
-from tracer.geometry.accelerators import BVH8, LAZY
-from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Method
 from tracer.scene.files import read_regular
 from tracer.scene.model import Scene
@@ -73,7 +71,6 @@ def wanted_state(scene: Scene, settings: Settings, given: Namespace, everything:
     """Return what the options ask for, with a caption that may have fields; `everything`: all buffers are wanted.
 
     Raises ValueError, in one line, for what the scene does not have, and what there is no memory for."""
-    check_tree(settings, given.view.view, scene)
     draw = replace(given.view, legend_at=given.legend_at, savings=given.savings, caption=given.caption)
     if draw.view.of_light:
         draw = replace(draw, light=options.light_index(given, f"--view {draw.view}:", draw.light, scene))
@@ -116,15 +113,6 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
     if view.records is Record.FATES and method.clusters:
         why = f"the method {method} shades by clusters of lights: single lights have no rays"
         raise ValueError(f"--view {view}: {why}; give {option} {BY_MODES}")
-
-
-def check_tree(settings: Settings, view: View, scene: Scene) -> None:
-    """Raise ValueError, in one line, where a view of what rays have had built meets a tree that is built before."""
-    static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
-    waits = settings.accelerator == LAZY or (settings.accelerator == BVH8 and static > LARGE)
-    if view is View.TREE and not waits:
-        why = f"{settings.accelerator} builds all of its tree before rays come; give --accelerator {LAZY}"
-        raise ValueError(f"--view {view.value}: {why}")
 
 
 # --- saved pictures and states ----------------------------------------------------------------------

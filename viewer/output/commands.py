@@ -30,15 +30,13 @@ from viewer.state.views import Record, View
 from viewer.util import resources
 
 CHANCE = "what is certified depends on time and threads"
-BUILT = "what rays have had built depends on all that has been seen"
 
 
 def needs_history(state: ViewState) -> bool:
     """Return whether frames before it show in the picture of a state."""
     method, view = Method.parse(state.settings.method), state.draw.view
     of_culling = view is View.CERTIFICATE or (view.records in (Record.WORK, Record.FATES) and method.culls)
-    of_modes_or_tree = view.of_modes or view is View.TREE
-    return of_culling or of_modes_or_tree or state.draw.savings is not None or not method.exact
+    return of_culling or view.of_modes or state.draw.savings is not None or not method.exact
 
 
 def chance(state: ViewState) -> str:
@@ -48,12 +46,6 @@ def chance(state: ViewState) -> str:
     limited = method.has_certificates and (math.isfinite(settings.certificate_seconds) or settings.threads != 1)
     by_chance = method.exact and not state.draw.view.of_modes and (limited or method.adaptive)
     return CHANCE if by_chance and needs_history(state) else ""
-
-
-def cannot_come_back(state: ViewState) -> str:
-    """Return why no frames before it bring a picture of the window back, in words; empty where some do, or none
-    count."""
-    return BUILT if state.draw.view is View.TREE else chance(state)
 
 
 def by_one_thread(state: ViewState) -> bool:

@@ -121,15 +121,19 @@ def published(results: experiment.Results) -> list[str]:
     return [*other, *(f"{scene}, in the paper, saved: {said}." for scene, said in _PUBLISHED.items())]
 
 
+FEW_FRAMES = 30
+"""Fewer than that are said to be few."""
 PREPARING = 0.05
 """The part of a method's time from which on it is worth a word that this was preparing."""
 
 
 def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
     """Return what else the times depend on, in half sentences; `in_window` says that they were measured beside one."""
-    settings = results.settings
+    settings, few = results.settings, []
+    if len(results.frames) < FEW_FRAMES:
+        few = [f"{len(results.frames)} frames teach few modes, longer runs save more"]
     if settings.get("verify"):
-        return ["no speed-up is given, as verifying takes time: it traces the culled rays as well"]
+        return ["no speed-up is given, as verifying takes time: it traces the culled rays as well", *few]
     said = ["times include what the window takes meanwhile, those of the command bench do not"] if in_window else []
     if "accelerator" in settings:
         said.append(f"rays go through the {settings['accelerator']}: speed-ups depend on the tree")
@@ -139,7 +143,7 @@ def caveats(results: experiment.Results, in_window: bool = False) -> list[str]:
             said.append(f"{share:.0%} of the time of {title_of(method)} is preparing")
     if len(results.frames) > 1:
         said.append("±: two standard errors over the frames")
-    return said
+    return said + few
 
 
 # --- zoom tests ------------------------------------------------------------------------------------

@@ -77,7 +77,7 @@ class Comparing:
     @property
     def a(self) -> Side | None:
         """What it is compared with, as far as it is there: in the view of B, or as a picture where its frame has
-        nothing for that, or no longer, as a tree is gone with its world."""
+        nothing for that."""
         b, traced, found = self.b, self._scheduler.traced, self.kept
         if b is None or traced is None:
             return None

@@ -24,7 +24,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Camera, Cancelled, Scene
 from tracer.settings import Settings
 from viewer.output import capture
-from viewer.output.commands import cannot_come_back, needs_history
+from viewer.output.commands import chance, needs_history
 from viewer.services import stills
 from viewer.services.named_states import Bookmarks
 from viewer.services.pictures import Pictures
@@ -191,7 +191,7 @@ class Films:
             certificate_seconds=math.inf,  # a count of certificates is what repeats exactly
         ).validated()  # fmt: skip
         state = replace(state, settings=settings)
-        state = replace(state, warmup=Warmup(unknown=cannot_come_back(state)))
+        state = replace(state, warmup=Warmup(unknown=chance(state)))
         state = state.with_draw(magnified=1, caption=plan.caption, legend=plan.legend)
         folder = self._preferences.picture_folder
         folder.mkdir(parents=True, exist_ok=True)

@@ -11,7 +11,6 @@ from dataclasses import replace
 from tracer.experiments.zoom import METHOD, Step
 from tracer.method import title_of
 from tracer.scene.model import Camera
-from viewer.output.commands import BUILT
 from viewer.output.comparison import Crop
 from viewer.services.frame_scheduler import FrameScheduler
 from viewer.services.history import KEPT_FRAMES, FrameHistory
@@ -23,7 +22,6 @@ from viewer.state.notices import Notices
 from viewer.state.pixels import Point, Zoom, around
 from viewer.state.session import Session
 from viewer.state.view_state import Pace, ViewState
-from viewer.state.views import View
 
 
 class FrameNavigator:
@@ -50,7 +48,6 @@ class FrameNavigator:
         self.go_to(record.state, f"picture {number}")
         said = ": the same picture, bit for bit" if record.size == self._scheduler.inputs.full_size else ""
         said = ": modes are learnt anew" if self._session.state.depends_on_modes else said
-        said = f", though {BUILT}" if record.state.draw.view is View.TREE else said
         self._notices.say(f"{self.name_of(number)}, again{said}")
 
     def go_to_experiment(self, run: Experiment, number: int) -> None:

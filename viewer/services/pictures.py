@@ -12,7 +12,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.util.text import shell_line
 from viewer.output import capture, commands, exr, other_programs
-from viewer.output.commands import BUILT, cannot_come_back, needs_history
+from viewer.output.commands import chance, needs_history
 from viewer.services import stills
 from viewer.services.capture_service import CaptureService
 from viewer.services.frame_scheduler import FrameScheduler
@@ -90,7 +90,7 @@ class Pictures:
         state = state.with_settings(verify=session.settings.verify, modes=False)
         if not needs_history(state):
             return state
-        why, repeats = cannot_come_back(state), self._history.repeats_of(frame)
+        why, repeats = chance(state), self._history.repeats_of(frame)
         if why or repeats is None:
             return state.with_warmup(unknown=why or UNKNOWN)
         return state.with_warmup(repeats=repeats)
@@ -117,7 +117,7 @@ class Pictures:
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
         words = commands.words(state, self._session.scene, name, self._loader.folders)
         line = shell_line(["shadowcull", *words])
-        why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != BUILT else ""
+        why, forgets = state.warmup.unknown, " (Backspace forgets them)"
         self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {line}")
         return line
 
@@ -149,7 +149,7 @@ class Pictures:
         settings = replace(state.settings, width=width, height=height, samples=plan.samples).validated()
         # Modes are those of a resolution, and begin anew in another; once more, and they show what they are.
         wanted = replace(state, settings=settings)
-        wanted = replace(wanted, warmup=Warmup(repeats=int(needs_history(wanted)), unknown=cannot_come_back(wanted)))
+        wanted = replace(wanted, warmup=Warmup(repeats=int(needs_history(wanted)), unknown=chance(wanted)))
         wanted = wanted.with_draw(magnified=1, legend=plan.legend, caption=plan.caption)
         stills.check_lights(wanted, scene, plan.ending == exr.ENDING)
         return stills.with_caption_filled(wanted, scene)

@@ -17,7 +17,7 @@ from tracer.experiments.camera_path import along_path
 from tracer.experiments.experiment import Experiment
 from tracer.experiments.filmstrip import Filmstrip
 from tracer.experiments.hunt import Hunt, Search
-from tracer.experiments.runner import STARTING, Run
+from tracer.experiments.runner import Run
 from tracer.experiments.zoom import ZoomTest
 from tracer.frame import Frame
 from tracer.method import in_order
@@ -83,7 +83,7 @@ def missing_in(run: Run, view: View) -> str:
 
 def shown_of(run: Run) -> str:
     """Say which frame of a run is the picture."""
-    return f"showing {run.label_shown}" if run.label_shown != STARTING else f"the {run.name} is starting"
+    return f"showing {run.label_shown}" if run.is_shown else f"{run.name}: {run.label}"
 
 
 def duration(seconds: float) -> str:

@@ -95,6 +95,12 @@ class Tour:
         if self.step is not None:
             self._go_to(next(iter(STEPS[STEPS.index(self.step) + 1 :]), None))
 
+    def back(self) -> None:
+        """Go back to the step before, which is to be done once more."""
+        self._c.selection.clear()  # what was clicked for it
+        if self.step is not None:
+            self._go_to(STEPS[max(STEPS.index(self.step) - 1, 0)])
+
     def show(self) -> None:
         """Do the step for the user, part by part, each of which can be looked at for a moment."""
         if self.lacks_figure_4:

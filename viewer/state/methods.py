@@ -7,13 +7,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tracer.frame import Frame
-from tracer.geometry.accelerators import BVH8, LAZY
-from tracer.geometry.world import LARGE
 from tracer.method import DEFAULT_METHOD, Kind, Method, additions, bases, title_of
 from tracer.methods.method_limits import lamps_in, remark, too_few
 from tracer.scene.lights import Light
 from tracer.settings import Settings
-from viewer.state.views import MOST_RECORDED, TREE, TREE_IS_GONE, Record, View, can_draw, can_record_lights
+from viewer.state.views import MOST_RECORDED, Record, View, can_draw, can_record_lights
 from viewer.util.numbers import count
 
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
@@ -77,12 +75,11 @@ def remark_on(lights: tuple[Light, ...], settings: Settings) -> str:
 
 @dataclass(frozen=True)
 class Missing:
-    """Why there is nothing to see, in a sentence or two, and which base of methods, or which structure, would show
-    something; nothing where none helps."""
+    """Why there is nothing to see, in a sentence or two, and which base of methods would show something; none where
+    none does."""
 
     text: str
     base: str = ""
-    accelerator: str = ""
 
 
 def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
@@ -99,12 +96,6 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
             return Missing(decision)
         shown_by = SHOWN_BY[view]
         return Missing(f"{method.title} has nothing for the view {view.label}; {title_of(shown_by)} has.", shown_by)
-    if view is View.TREE and not drawn:
-        if TREE in frame.structures:
-            return Missing(f"There is nothing to see: {TREE_IS_GONE}.")
-        built = f"All of the tree was built before rays came ({frame.settings.accelerator})."
-        lazy = f"{BVH8} with more than {count(LARGE)} primitives that never move"
-        return Missing(f"{built} {LAZY} builds it where they arrive, and so does {lazy}.", accelerator=LAZY)
     if view.records is Record.VERIFY and method.exact and not method.uses_modes:
         why = f"{method.kind.title} is exact" if method.kind.culls else "Every shadow ray is traced"
         return Missing(f"{why}: no answer can be wrong. The paper's method is sometimes wrong.", BY_MODES)

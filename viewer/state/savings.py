@@ -282,7 +282,8 @@ def _saved(frame: Frame) -> Clause:
     if shadow.due == shadow.traced:
         tip = "every shadow ray was traced; the modes that this has set may save some later"
         return Clause(f"{name}: nothing saved yet", tip)
-    tip = f"{count(shadow.saved)} of {count(shadow.due)} shadow rays due: {terms.CULLED}, or {terms.DYNAMIC_ONLY}"
+    what = f"{terms.CULLED}, or {terms.DYNAMIC_ONLY}"
+    tip = f"{count(shadow.saved)} of {count(shadow.due)} shadow rays due: {what}; pictures of other sizes have others"
     return Clause(f"{name}: {percent(shadow.saved, shadow.due)} of shadow rays saved{part}", tip)
 
 

@@ -24,8 +24,6 @@ soon and asks for no other frame."""
 CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
 CELL_LIGHTS = "cell lights"  # that of methods whose cells know which lights they must look at
 VOXELS, LIGHT_CUBES = "voxels", "light cubes"  # structures of methods
-TREE = "tree"  # that rays have built
-TREE_IS_GONE = "the frame's tree was freed with its world"
 
 
 class Record(Enum):
@@ -97,7 +95,6 @@ class View(StrEnum):
     CUTS = "cuts"
     VOXELS = "voxels"
     CELL_LIGHTS = "cell-lights"
-    TREE = "tree"
     FATE = "fate"
     MOVING_SHADOW = "moving-shadow"
 

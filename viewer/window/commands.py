@@ -81,7 +81,7 @@ def _file(ui: Ui) -> list[Command]:
     stands = Condition(lambda: loader.load_job is None and up() is not None,
                        "no model is in a studio, or one is being loaded")  # fmt: skip
     return [
-        Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O", also="scene bart kitchen robot museum"),
+        Command("Open...", "File", lambda: ui.open(Dialog.OPEN_FILE), "Ctrl+O", also="scene"),
         Command("Reload", "File", loader.reload, "F5", enabled=scene_open(c)),
         setting_command(ui, "watch_scene", "File"),
         Command("Studio", "File", toggle_studio, checked=in_studio, separated=True,
@@ -127,7 +127,7 @@ def _view(ui: Ui) -> list[Command]:
     lit = Condition(
         lambda: c.session.scene is not None and len(c.session.scene.lights) > 1, "the scene has no other light"
     )
-    sliced = Condition(lambda: c.scheduler.drawn_view.has_slice, "choose the view Voxels or Tree built")
+    sliced = Condition(lambda: c.scheduler.drawn_view.has_slice, "choose the view Voxels")
 
     def show(view: View) -> Command:
         return Command(view.label, "View", lambda: c.session.set_draw(view=view), view.key, also=view.declared.also,
@@ -324,5 +324,7 @@ def _help(ui: Ui) -> list[Command]:
                 checked=lambda: Dialog.KEYS in ui.dialogs),
         Command("Documentation", "Help", partial(read, "index"), also="manual docs", tip="in the web browser"),
         Command("Glossary", "Help", partial(read, "glossary"), tip="the words of the paper and ours"),
+        Command("Scenes", "Help", partial(read, "scenes"), also="bart kitchen robot museum",
+                tip="which files are read, and where BART's scenes are to be had"),
         Command("About Shadowcull", "Help", about),
     ]  # fmt: skip

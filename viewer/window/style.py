@@ -27,12 +27,12 @@ _NAMED = {
     "QUIET": ("9EA6B2", "5A6270"),
     "WARNING": ("F5BD4F", "8F5B00"),
     "ERROR": ("FF786B", "BE2416"),
-    "BLUE": ("408FDB", "1F6FBF"),
-    "GREEN": ("00B887", "00875F"),
-    "ORANGE": ("EDA31A", "C77700"),
-    "SKY": ("8CC7F2", "4A9FDB"),
-    "PINK": ("DB87B8", "B85590"),
-    "YELLOW": ("F0E342", "B8A200"),
+    "TEAL": ("4FD1C5", "0B7F77"),  # these six are of curves, and none is near a mode's
+    "VIOLET": ("B18CFF", "6A3FC4"),
+    "WHITE": ("E8EAEE", "22262C"),
+    "TAN": ("C8A27A", "8A5A2B"),
+    "ROSE": ("FF8FA3", "C2334D"),
+    "LIME": ("A8D672", "4F7F1F"),
     "GREY": ("8C94A3", "8C94A3"),
     "MARK": ("F2F5FA", "20242B"),
     "PLOT": ("16181D", "FFFFFF"),
@@ -42,7 +42,7 @@ _NAMED = {
 }
 _COLORS = {name: rgb(dark) for name, (dark, _) in _NAMED.items()}
 (
-    BACKGROUND, QUIET, WARNING, ERROR, BLUE, GREEN, ORANGE, SKY, PINK, YELLOW, GREY, MARK,
+    BACKGROUND, QUIET, WARNING, ERROR, TEAL, VIOLET, WHITE, TAN, ROSE, LIME, GREY, MARK,
     PLOT, GRID, AXIS_TEXT, TITLE,
 ) = _COLORS.values()  # fmt: skip
 ON_PICTURE_ERROR = rgb(_NAMED["ERROR"][0])

@@ -18,14 +18,11 @@ from PIL import Image
 
 from tests.commands import CAMERA, ROOM, Run, pixels
 from tests.terminal import Terminal
-from tracer.frame import Settings
 from tracer.scene.load import load_scene
 from tracer.scene.mesh_options import IN_STUDIO
 from viewer.cli import main as command_line
-from viewer.cli import pictures
 from viewer.output import capture
 from viewer.state.palette import BENEATH
-from viewer.state.views import View
 from viewer.views.color import TOO_BRIGHT
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -147,25 +144,10 @@ def test_views_are_drawn_by_methods_that_have_them(run: Run) -> None:
     out = run.ok("render", "slice.png", "--print-command")
     assert "--view voxels:1" in out and "--slice x:0.7" in out
     assert "method lie-exact" in run.ok(*ROOM_48, "-o", "lights.png", "--view", "cell-lights", "--range", "0:2")
-    tree = ("--view", "tree", "--accelerator", "kdtree-lazy", "--method", "none", "--legend")
-    for name, more in (("tree", ()), ("again", ()), ("elsewhere", ("--slice", "x:0.9"))):
-        run.ok(*ROOM_48, "-o", f"{name}.png", *tree, *more)
-    assert (pixels("tree.png") == pixels("again.png")).all() and (pixels("tree.png") != pixels("elsewhere.png")).any()
     lamps = ("--lamp-radius", 0.5, "--lamp-samples", 64, "--lightcuts-error", 0.3)
     for view, more in (("primitive", ()), ("pixel-count", ()), ("cuts", lamps)):
         run.ok(*ROOM_48, "-o", f"{view}.png", "--frame", 2, "--warmup", 2, "--view", view, *more)
         assert len(np.unique(pixels(f"{view}.png").reshape(-1, 3), axis=0)) > 3
-
-
-def test_what_moves_makes_no_tree_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = load_scene("room.aff")
-    static = len(scene.objects[0].triangles) + len(scene.objects[0].quadrics)
-    assert static < scene.primitive_count
-    monkeypatch.setattr(pictures, "LARGE", static - 1)
-    pictures.check_tree(Settings(), View.TREE, scene)
-    monkeypatch.setattr(pictures, "LARGE", static)
-    with pytest.raises(ValueError, match="before rays come"):
-        pictures.check_tree(Settings(), View.TREE, scene)
 
 
 def test_views_of_what_is_wrong_verify_by_themselves(run: Run) -> None:

@@ -71,7 +71,6 @@ MISTAKES = {
         ("--view certificat", "'certificat' is not a view: did you mean certificate:LIGHT?"),
         ("--view fate:0 --method lightcuts", "single lights have no rays; give --method paper"),
         ("--view cuts --method auto", "the method auto has nothing for it; give --method lightcuts"),
-        ("--view tree", "bvh8 builds all of its tree before rays come; give --accelerator kdtree-lazy"),
         ("--view voxels --method none", "the method none has nothing for it; give --method voxels"),
         ("--view cell-lights --method paper", "give --method lie-exact"),
         ("--view shadow:7", "lights are 0 to 1"),
@@ -120,7 +119,6 @@ MISTAKES = {
         ("-o d --caption {sceen}", "the caption '{sceen}' is wrong: there is no field {sceen}, but scene"),
         ("-o d --view shadow:7", "the scene's lights are 0 to 1"),
         ("-o d --view voxels --method paper", "nothing for it; give --method voxels"),
-        ("-o d --view tree", "bvh8 builds all of its tree before rays come"),
         ("-o d --exposure 1 --view normal", "--exposure does nothing in the view normal"),
     ],
     "figure room.aff --size 64x48 --threads 1": [
@@ -131,7 +129,6 @@ MISTAKES = {
         ("-o f.png --view shadow:9", "lights are 0 to 1"),
         ("-o f.png --view voxels", "the method none has nothing for it; give --methods voxels"),
         ("-o f.png --view cuts --methods lightcuts,paper", "it; give --methods lightcuts"),
-        ("-o f.png --view tree --accelerator kdtree-lazy", "all methods share one tree"),
     ],
     "explain room.aff --size 48x32": [
         ("", "the following arguments are required: --pixel"),

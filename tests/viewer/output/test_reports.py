@@ -59,7 +59,10 @@ def test_what_times_depend_on_is_said_alike_in_the_window_and_by_bench() -> None
     assert beside[1:] == said and "window" in beside[0] and not any("window" in one for one in said)
     found.settings["verify"] = True
     for one in (caveats(found), caveats(found, in_window=True)):
-        assert one == ["no speed-up is given, as verifying takes time: it traces the culled rays as well"]
+        assert one[0] == "no speed-up is given, as verifying takes time: it traces the culled rays as well"
+    assert caveats(found)[1:] == ["2 frames teach few modes, longer runs save more"]
+    found.frames = list(range(100))
+    assert len(caveats(found)) == 1
 
 
 @pytest.mark.parametrize(

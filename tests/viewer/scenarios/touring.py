@@ -18,7 +18,7 @@ from viewer.util.resources import default_scene
 from viewer.window.panels.status import doing
 
 COST, WHOLE, MET, WHY, MOVE, FAILS, RULE, NEXT = STEPS
-SHOW, SKIP = f"//Tour/{icons.ICON_FA_PLAY}  Show me", "//Tour/**/Skip"
+SHOW, SKIP = f"//Tour/{icons.ICON_FA_PLAY}  Show me", "//Tour/**/Next"
 
 
 def touring(d: Driver) -> None:
@@ -47,12 +47,15 @@ def _by_hand(d: Driver) -> None:
     d.press("C").settle()
     d.expect("Press C once more")
     with patch.object(tours, "SECONDS", 90.0):
-        d.press("C").expect("Done: the next step", patience=60.0)
+        d.press("C").wait(lambda: tour.is_done, "culling off and on", 60.0)
         assert "twice" not in d.text() and tour.step is COST, "it is told that it is done"
-        d.click(f"//Tour/{icons.ICON_FA_CHECK}  Done: the next step")
+        d.click(f"//Tour/{icons.ICON_FA_CHECK}  Done")
     d.press("2").wait(lambda: tour.step is MET, "the occlusion modes", 10.0)
     d.press("3").pause(0.6)
     assert tour.step is MET, "half of it"
+    d.click("//Tour/**/Back")
+    assert tour.step is WHOLE
+    d.press("2").wait(lambda: tour.step is MET, "the occlusion modes once more", 10.0).press("3").pause(0.6)
     d.press("1").wait(lambda: tour.step is WHY, "the shadow modes", 10.0)
     d.pick(0.02, 0.1).settle()  # the sky
     assert tour.step is WHY

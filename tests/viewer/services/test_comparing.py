@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +9,8 @@ import pytest
 
 from tests.viewer.desk import ELSEWHERE, Desk
 from tests.viewer.drawn import values_in
-from tests.viewer.fakes import make_frame, with_tree
+from tests.viewer.fakes import make_frame, with_voxels
 from tracer.frame import Settings
-from tracer.geometry.accelerators import BVH8, LAZY
 from viewer.state.comparison import CompareMode, Side
 from viewer.state.draw_options import Slice, Tone
 from viewer.state.views import View
@@ -55,30 +53,14 @@ def test_maps_of_both_have_one_range(desk: Desk) -> None:
     assert comparing.span(View.COLOR) is None
 
 
-def test_a_whose_tree_is_gone_is_shown_as_a_picture(desk: Desk) -> None:
-    comparing = desk.c.comparing
-    desk.c.settings.change(accelerator=LAZY)
-    desk.c.session.set_draw(view=View.TREE)
-    keep(desk)
-    comparing.start(CompareMode.SIDE)
-    assert comparing.a.view is View.TREE and comparing.span(View.TREE) is not None
-    desk.c.settings.change(accelerator=BVH8)
-    desk.rest()
-    desk.c.settings.change(accelerator=LAZY)
-    desk.rest()
-    gc.collect()
-    assert comparing.b.view is View.TREE and comparing.a.view is View.COLOR
-    assert comparing.span(View.TREE) is None
-
-
 def test_a_difference_is_that_of_the_chosen_slice(desk: Desk) -> None:
     comparing = desk.c.comparing
-    sides = [Side(with_tree(make_frame(Settings(samples=samples))), View.TREE, 0, "", 0) for samples in (1, 2)]
+    sides = [Side(with_voxels(make_frame(Settings(samples=samples))), View.VOXELS, 0, "", 0) for samples in (1, 2)]
     found = []
     for cut in (Slice(1, 0.25), Slice(0, 0.6)):
         desk.c.session.set_draw(slice=cut)
         found.append(comparing.difference(*sides).values.numbers)
-        assert np.array_equal(found[-1], values_in(sides[1].frame, View.TREE, slice=cut).numbers)
+        assert np.array_equal(found[-1], values_in(sides[1].frame, View.VOXELS, slice=cut).numbers)
     assert not np.array_equal(*found)
 
 

@@ -103,7 +103,7 @@ def test_pictures_are_asked_for_once_and_again_after_a_run():
         window.request()
     (request,) = window.renders.asked
     assert (request.settings.width, request.settings.height, request.parts) == (*SIZE, (16,))
-    window.request(run=SimpleNamespace(label_shown="frame 3", name="experiment", verifies=True))
+    window.request(run=SimpleNamespace(label_shown="frame 3", is_shown=True, name="experiment", verifies=True))
     assert window.scheduler.title == f"showing frame 3   {View.COLOR.label}"
     window.request()
     assert window.renders.asked == [request, request]

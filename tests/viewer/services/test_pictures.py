@@ -19,7 +19,7 @@ from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
 from viewer.output import capture
-from viewer.output.commands import BUILT, needs_history
+from viewer.output.commands import needs_history
 from viewer.services import stills
 from viewer.state.draw_options import Curve, DrawOptions, Tone
 from viewer.state.view_state import ViewState
@@ -130,20 +130,6 @@ def test_a_command_is_printed_for_a_saved_picture(
         assert np.array_equal(np.asarray(first), np.asarray(second))
         state, again = (image.text["shadowcull"].partition('"statistics"')[0] for image in (first, second))
         assert state == again
-
-
-def test_a_tree_that_rays_have_had_built_cannot_be_brought_back(odd: Desk) -> None:
-    odd.c.settings.change(accelerator="kdtree-lazy")
-    odd.c.session.set_draw(view=View.TREE)
-    odd.rest()
-    assert odd.c.pictures.command() is not None and f"may differ: {BUILT}" in odd.said
-    assert odd.c.pictures.save()
-    assert odd.runs.current.state.warmup.unknown == BUILT
-    odd.run_to_its_end()
-    odd.c.films.plan = replace(odd.c.films.plan, first=0, last=1, size=(32, 24), video=False)
-    odd.c.films.start()
-    assert odd.c.films.film.state.warmup.unknown == BUILT
-    odd.run_to_its_end()
 
 
 @pytest.fixture

@@ -35,7 +35,7 @@ def test_an_experiment_is_that_of_the_command_and_its_frames_are_the_picture(des
     desk.came.clear()
     desk.runs.start_experiment()
     run = desk.runs.experiment
-    assert shown_of(run) == "the experiment is starting"
+    assert shown_of(run) == "experiment: starting"
     desk.run_to_its_end()
     assert shown_of(run).startswith("showing frame ")
     assert run.whole and run.results is not None and desk.said.startswith("experiment done: 5 frames in ")

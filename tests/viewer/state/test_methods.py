@@ -15,7 +15,6 @@ from tests.viewer.fakes import (
     with_certificates,
     with_cuts,
     with_lamps,
-    with_tree,
     with_voxels,
 )
 from tracer.experiments.experiment import with_reference
@@ -45,10 +44,7 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
     shows |= {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}
     one_by_one = tuple(kind.name for kind in bases() if kind.name not in cuts)  # rays to single lights
     shows |= {View.FATE: one_by_one, View.MOVING_SHADOW: one_by_one}
-    if view is View.TREE:
-        assert (found.base, found.accelerator) == ("", "kdtree-lazy") and "before rays came (bvh8)" in found.text
-        assert missing(view, with_tree(frame)) is None
-    elif view not in shows or method.split("+")[0] in shows[view]:
+    if view not in shows or method.split("+")[0] in shows[view]:
         assert found is None
     else:
         assert found is not None and found.base in shows[view]

@@ -59,7 +59,7 @@ def legends(frame: Frame) -> Iterator[tuple[str, Legend | None]]:
         yield f"{view.label}, shaded in part", legend_in(in_part(frame), view, 2)
     for view in (View.SAVED, View.COST):
         yield f"{view.label}, shares", legend_in(frame, view, shares=True)
-    for view in (View.DEPTH, View.CELL_LIGHTS, View.CUTS, View.TREE):
+    for view in (View.DEPTH, View.CELL_LIGHTS, View.CUTS):
         yield f"{view.label}, in a range", legend_in(frame, view, span=(1.0, 2.5), slice=cut)
     for view in (View.SHADOW, View.VOXELS):
         yield f"{view.label}, of a light that nothing is known of", legend_in(frame, view, 2 if view.has_slice else 20)

@@ -179,7 +179,7 @@ def test_a_slice_has_the_colours_of_its_voxels_over_the_dimmed_picture(frame: Fr
 
 def test_what_a_frame_has_not_is_not_drawn(plain: Frame) -> None:
     for view in View:
-        if view.records or view in (View.CERTIFICATE, View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.TREE):
+        if view.records or view in (View.CERTIFICATE, View.CUTS, View.VOXELS, View.CELL_LIGHTS):
             with pytest.raises(ValueError, match=f"nothing for the view {view.label}"):
                 picture(plain, view)
             assert legend_in(plain, view) is None and words_in(plain, view, 0, 0, 0) == ()

@@ -1,4 +1,4 @@
-"""Slices through space and through trees: what each pixel sees of them, by a ray at a time; and slices as words."""
+"""Slices through space: what each pixel sees of them, by a ray at a time; and slices as words."""
 
 from __future__ import annotations
 
@@ -9,24 +9,21 @@ import numpy as np
 import pytest
 
 from tests.viewer.drawn import values_in, words_in
-from tests.viewer.fakes import CubesBuilt, make_frame, with_tree, with_voxels
+from tests.viewer.fakes import make_frame, with_voxels
 from tracer.frame import Frame, Settings
 from tracer.geometry.camera import pinhole
 from viewer.state.draw_options import MIDDLE, Slice
-from viewer.state.methods import missing
-from viewer.state.views import View, can_draw
-from viewer.views import tree, voxels
-from viewer.views.tree import tree_of, tree_seen
+from viewer.state.views import View
+from viewer.views import voxels
 from viewer.views.voxels import voxels_of, voxels_seen
 
 CUTS = [Slice(0, 0.0), Slice(0, 0.2), Slice(1, 0.3), Slice(1, 0.9), Slice(2, 0.5), Slice(2, 1.0)]
-TREE_CUTS = [Slice(0, 0.3), Slice(1, 0.1), Slice(1, 0.9), Slice(2, 0.45)]
 
 
 @pytest.fixture(scope="module")
 def seen() -> Frame:
     """What is seen lies at different distances, so that some of it is before the slice."""
-    plain = with_tree(with_voxels(make_frame(Settings(width=64, height=48))))
+    plain = with_voxels(make_frame(Settings(width=64, height=48)))
     depth = np.where(np.indices(plain.depth.shape)[1] % 5 == 0, np.float32(1.5), np.float32(30.0))
     return replace(plain, depth=depth)
 
@@ -93,35 +90,3 @@ def test_slices_as_words_and_by_layers() -> None:
             Slice.parse(wrong)
     layers = [MIDDLE.in_layer(number, 8).layer(8) for number in (-1, 0, 3, 7, 8)]
     assert layers == [0, 0, 3, 7, 7]
-
-
-@pytest.mark.parametrize("cut", TREE_CUTS)
-def test_each_pixel_sees_the_part_that_its_ray_meets_whatever_lies_before(seen: Frame, cut: Slice) -> None:
-    parts, (found, plane), kinds = tree_of(seen), tree_seen(seen, cut), set()
-    for y in range(seen.height):
-        for x in range(y % 2, seen.width, 2):
-            point, distance = _met(seen, cut.axis, tree.plane_of(parts, cut), x, y)
-            if min(_from_borders(4.0 * point, cut.axis), abs(distance - seen.depth[y, x])) < 1e-3:
-                continue
-            said = words_in(seen, View.TREE, 0, x, y, slice=cut)
-            if not ((point >= parts.extent[:3]) & (point < parts.extent[3:])).all():
-                assert said == ("-",)
-                continue
-            i, k = np.floor(4.0 * point[[0, 2]])
-            what = "leaf of 2 primitives" if i % 2 == 0 else "not built yet"
-            assert said == (what, f"level {6 if k >= 0 else 3}", *(("object 3",) if i >= 4 else ()))
-            assert plane.behind[y, x] == (distance > seen.depth[y, x])
-            wide = distance * float(pinhole(seen.camera, seen.width, seen.height).spread)
-            assert plane.per_pixel[y, x] == pytest.approx(wide, rel=1e-3)
-            kinds.add((what, bool(plane.behind[y, x])))
-    assert len({what for what, _ in kinds}) == 2 or not cut.axis
-    assert np.array_equal(values_in(seen, View.TREE, slice=cut).known, found.numbers >= 0)
-
-
-def test_a_tree_that_is_gone_shows_nothing(seen: Frame) -> None:
-    gone = CubesBuilt()
-    gone.alive = False
-    left = replace(seen, structures={"tree": gone})
-    assert (tree_seen(left, TREE_CUTS[0])[0].numbers < 0).all()
-    assert not can_draw(make_frame(), View.TREE) and can_draw(seen, View.TREE)
-    assert not can_draw(left, View.TREE) and "freed with its world" in missing(View.TREE, left).text

@@ -12,7 +12,7 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
-from tracer.geometry.accelerators import MOST_TOGETHER
+from tracer.geometry.accelerators import MAX_PACKET_SIZE
 from tracer.geometry.boxes import inverse
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, read_batch
 from tracer.geometry.rays import INFINITY, MISS
@@ -41,7 +41,7 @@ from tracer.simd import (
 
 INLINED: Any = {"forceinline": True, "error_model": "numpy"}  # as `inlined`, for what has two versions
 LANES = 16
-PACKET = MOST_TOGETHER  # rays
+PACKET = MAX_PACKET_SIZE  # rays
 ROW = 4 * PACKET  # bytes of one number of each ray
 FAR = np.float32(1e30)  # no hit is farther, and every empty child is
 LARGEST = np.float32(1e29)  # of t_max, short of what stands for a blocked ray

@@ -38,7 +38,7 @@ class World8(NamedTuple):
     hold anything; and how many rays may go together.  The three trees follow it in memory."""
 
     trees: int
-    together: int
+    max_packet_size: int
 
 
 WORLD, TREE = block_size(World8), block_size(PlacedTree)

@@ -10,14 +10,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.accelerators import MOST_TOGETHER
+from tracer.geometry.accelerators import MAX_PACKET_SIZE
 from tracer.geometry.boxes import NO_BOX, PADDING, union_of
 from tracer.geometry.building import watched
 from tracer.geometry.bvh8 import subtrees, traverse
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.bvh8.layout import BOX, CHILDREN, PRIMITIVES, Tree
 from tracer.geometry.bvh8.object_trees import blocks_of, build_object_trees, build_top_level, load_corners, move_objects
-from tracer.geometry.bvh8.parts import SubtreeParts
 from tracer.geometry.bvh8.placed import MOVING_TREE, RESTING_TREE, STATIC_TREE, PlacedTree, World8, pack_world
 from tracer.geometry.bvh8.subtrees import LargeTree
 from tracer.geometry.poses import Poses, products
@@ -39,7 +38,7 @@ class Bvh8:
 
     closest, any_hit = traverse.closest, traverse.any_hit
     hit_padding = PADDING
-    together = MOST_TOGETHER
+    max_packet_size = MAX_PACKET_SIZE
 
     def __init__(
         self, primitives: Primitives, objects: int, progress: Progress | None = None, lazy: bool = False
@@ -74,7 +73,6 @@ class Bvh8:
         triangle, box = np.eye(1, 9, 3, np.float32), np.ones((1, 6), np.float32)
         tree = LargeTree(triangle, box, np.zeros(2, np.int64), 1)
         tree.build_all()
-        SubtreeParts(tree, 1).at(box[:, :3].copy(), 0)
 
     def _topology(self, index: int, progress: Progress | None = None) -> Topology:
         """The topology of a dynamic object's tree; of one that deforms, that for the time it is nearest to."""
@@ -133,7 +131,7 @@ class Bvh8:
                 (self.static, 0, table), (self.dynamic, self.resting_root, 0), (self.dynamic, 0, 0)
             )
         ]  # fmt: skip
-        self._data = pack_world(World8(there, self.together), trees)
+        self._data = pack_world(World8(there, self.max_packet_size), trees)
         to_object = poses.to_object.reshape(-1, 12).astype(np.float32)
         return placed_by(self, primitives, to_object, self._data, bool(moving.any()), there_now[0])
 
@@ -183,12 +181,6 @@ class Bvh8:
         starts = self._primitives.triangle_starts[1] + self._primitives.quadric_starts[1]
         size = large.memory_bytes + moving.nodes.nbytes + moving.blocks.nbytes
         return BuiltPart(len(large.used.nodes) + len(moving.nodes), large.built + total - int(starts), total, size)
-
-    def parts_built(self) -> SubtreeParts | None:
-        """Which subtrees of what never moves are built, and how."""
-        if self._large is None or not self._lazy:
-            return None
-        return SubtreeParts(self._large, len(self._primitives.object_of))
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -27,7 +27,7 @@ from tracer.geometry.bvh8.single_ray import ROOM, SINGLE_MEMORY, any_one_by_one
 from tracer.geometry.bvh8.stream import STREAM_MEMORY, closest_in_stream
 from tracer.geometry.queries import read_batch
 from tracer.geometry.shared_memory import allocate, free
-from tracer.runtime.kernels import entry, inlined
+from tracer.runtime.kernels import inlined, native_callback
 from tracer.simd import i64_at, load_i64, local_memory, lowest_bit, store
 
 
@@ -62,8 +62,8 @@ def _trace(data, batch, first, last, counts, nearest):
     alone = local_memory(SINGLE_MEMORY)
     stream = np.int64(0)  # half a megabyte, where it is wanted: more than the stack of some systems' threads can take
     which, world = read_batch(batch).which, read_world(data)
-    trees, together_at_most = world.trees if nearest else trees_asked(data, which), world.together
-    size = PACKET if together_at_most == 1 else together_at_most  # rays that go alone are read as many at a time
+    trees, max_packet_size = world.trees if nearest else trees_asked(data, which), world.max_packet_size
+    size = PACKET if max_packet_size == 1 else max_packet_size  # rays that go alone are read as many at a time
     occluders = local_memory(24)  # the last block met in each tree; block 0 is empty
     for number in range(3):
         store(occluders + 8 * number, np.int64(0))
@@ -76,7 +76,7 @@ def _trace(data, batch, first, last, counts, nearest):
             # Leave the first vector for later, or trace its rays one by one, if they have no direction in common.
             v = lowest_bit(todo)
             axis, way, together = lead_of(memory, v)
-            if not (finite and together and together_at_most > 1):
+            if not (finite and together and max_packet_size > 1):
                 if nearest:
                     apart |= np.int64(1) << v
                 else:
@@ -112,13 +112,13 @@ def _trace(data, batch, first, last, counts, nearest):
         free(stream)
 
 
-@entry
+@native_callback
 def closest(data, batch, first, last, counts):
     """Nearest hits of rays first to last - 1."""
     _trace(data, batch, first, last, counts, True)
 
 
-@entry
+@native_callback
 def any_hit(data, batch, first, last, counts):
     """What of that which is asked for lies in the interval of rays first to last - 1."""
     _trace(data, batch, first, last, counts, False)

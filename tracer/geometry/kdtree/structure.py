@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.accelerators import MOST_TOGETHER
+from tracer.geometry.accelerators import MAX_PACKET_SIZE
 from tracer.geometry.boxes import OUTWARDS, transform_boxes, triangle_boxes
 from tracer.geometry.building import in_chunks, watched
 from tracer.geometry.kdtree import traverse
@@ -33,7 +33,7 @@ EVEN = 1.1  # ratio of an object's axes at most, or else a little in its space m
 class InObjectSpace:
     """Primitives are tested one by one, each in the space of its object, and nothing but its own test decides."""
 
-    together = MOST_TOGETHER  # of which they take no note: they trace rays one by one
+    max_packet_size = MAX_PACKET_SIZE  # of which they take no note: they trace rays one by one
     extent = 0.0  # boxes of dynamic objects are not padded
     hit_padding = 1e30  # and a hit need not lie in any
 
@@ -165,9 +165,6 @@ class KdTree(InObjectSpace):
 
     def built(self) -> None:
         """All of it is built before rays come."""
-
-    def parts_built(self) -> None:
-        """None of it waits."""
 
     def bounds(self) -> Float32:
         """Box (6,) around everything that is there now; inverted for an empty world."""

@@ -18,7 +18,7 @@ from tracer.geometry.kdtree.tree import STACK_SIZE, Best, KdWorld, Stack, betwee
 from tracer.geometry.memory import local_float32, local_int32
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY, STEPS, rays_of, read_batch
 from tracer.geometry.rays import INFINITY, MISS, ray_at
-from tracer.runtime.kernels import entry, inlined, subkernel
+from tracer.runtime.kernels import inlined, native_callback, subkernel
 from tracer.simd import f32_at, i32_at, i64_at, u8_at
 from tracer.simd.records import reading
 
@@ -102,7 +102,7 @@ def _any_of(s, top, ray):
     return _walk_top(s, top, ray, no_hit(INFINITY), False).primitive
 
 
-@entry
+@native_callback
 def closest(data, batch, first, last, counts):
     """Nearest hits of rays first to last - 1; counts[STEPS] and counts[TESTS] grow."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))
@@ -123,7 +123,7 @@ def closest(data, batch, first, last, counts):
         hit_primitive[i], hit_u[i], hit_v[i] = best.primitive, best.u, best.v
 
 
-@entry
+@native_callback
 def any_hit(data, batch, first, last, counts):
     """What of that which is asked for lies in the interval of rays first to last - 1."""
     stack = Stack(local_int32(STACK_SIZE), local_float32(STACK_SIZE), local_float32(STACK_SIZE))

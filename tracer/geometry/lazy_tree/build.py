@@ -29,8 +29,8 @@ from tracer.geometry.lazy_tree.references import (
     within,
 )
 from tracer.geometry.shared_memory import CLAIMED, UNBUILT, allocate, exchange, free, publish, read_shared
-from tracer.runtime.kernels import entry, kernel, subkernel
-from tracer.simd import as_i32, call_entry, i32_at, load_i64, store
+from tracer.runtime.kernels import kernel, native_callback, subkernel
+from tracer.simd import as_i32, call_native, i32_at, load_i64, store
 from tracer.simd.addresses import f64_at
 from tracer.simd.records import writing
 
@@ -109,7 +109,7 @@ def _split(node, source, table, wide, box, level):
     return True
 
 
-@entry
+@native_callback
 def open_node(node, pause, _a, _b, _c):
     """Build the node at an address, or wait until whoever claimed it has built it.
 
@@ -119,7 +119,7 @@ def open_node(node, pause, _a, _b, _c):
         while read_shared(node) == CLAIMED:
             looks += 1
             if looks % PATIENCE == 0 and pause != 0:
-                call_entry(pause, 0, 0, 0, 0, 0)
+                call_native(pause, 0, 0, 0, 0, 0)
         return
     address = load_i64(node + FIRST)
     header, given = read_header(address), references_at(address)
@@ -151,7 +151,7 @@ def new_root(bounds, numbers, boxes, weight, table):
     return root
 
 
-@entry
+@native_callback
 def free_tree(root, _a, _b, _c, _d):
     """Free all memory of a tree."""
     waiting, pairs = np.empty(4 * DEPTH, np.int64), np.empty(4 * DEPTH, np.int64)

@@ -17,7 +17,6 @@ from tracer.geometry.lazy_tree import traverse
 from tracer.geometry.lazy_tree.build import free_tree, new_root, open_node
 from tracer.geometry.lazy_tree.hierarchy import bounds_of_roots, hierarchy_over
 from tracer.geometry.lazy_tree.node import Building
-from tracer.geometry.lazy_tree.parts import LazyParts
 from tracer.geometry.lazy_tree.references import BYTES, NODES, Source
 from tracer.geometry.lazy_tree.traverse import LazyWorld
 from tracer.geometry.lazy_tree.upper import raise_over
@@ -129,10 +128,6 @@ class LazyKdTree(InObjectSpace):
         """What rays have had built of the trees that there are now."""
         nodes, size = (sum(tree.counted(what) for tree in self._trees) for what in (NODES, BYTES))
         return BuiltPart(nodes, int(np.count_nonzero(self._touched)), len(self._touched), size)
-
-    def parts_built(self) -> LazyParts:
-        """What has been built where."""
-        return LazyParts(self, self._present, len(self._touched))
 
     @property
     def trees(self) -> list[LazyTree]:

@@ -50,7 +50,7 @@ EFFORT, LATEST, HIDING = range(3)
 HIDDEN, SEEN, PARTLY = range(3)  # what a point sees of a lamp
 
 
-class Room(NamedTuple):
+class Scratch(NamedTuple):
     """Addresses of memory that the kernel which asks has: of samples, of primitives' numbers and these prepared, of
     what is kept of one and a vector's points, and of bits of samples, 16 points one after the other, that are blocked
     and of which nothing is certain; of int32 for each point, how many primitives were asked about its samples; of a
@@ -68,9 +68,9 @@ class Room(NamedTuple):
 
 
 @inlined
-def start_lamp(room):
+def start_lamp(scratch):
     """Nothing has been asked about a lamp."""
-    state = i64_at(room.state)
+    state = i64_at(scratch.state)
     state[EFFORT], state[LATEST], state[HIDING] = 0, -1, 0
 
 
@@ -81,32 +81,32 @@ def batches_of(count):
 
 
 @subkernel
-def find_primitives(o, number, beam, most, room, counts):
+def find_primitives(o, number, beam, most, scratch, counts):
     """Find the primitives that may come into a beam, whole vectors of them; how many, or -1 for more than `most`."""
-    found = primitives_met(o, number, beam, most, room.numbers, counts)
-    i64_at(room.state)[EFFORT] += FOR_BEAM + FOR_SIXTEEN * batches_of(found if found >= 0 else most)
+    found = primitives_met(o, number, beam, most, scratch.numbers, counts)
+    i64_at(scratch.state)[EFFORT] += FOR_BEAM + FOR_SIXTEEN * batches_of(found if found >= 0 else most)
     for k in range(max(found, 0), LANES * batches_of(found)):
-        store(room.numbers + 4 * k, i32_at(room.numbers)[0])
+        store(scratch.numbers + 4 * k, i32_at(scratch.numbers)[0])
     return found
 
 
 @subkernel
-def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, room, counts):
+def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, scratch, counts):
     """Ask the primitives that come into a beam about the points of a vector: so many as were found, and perhaps
     `prepared`.  The rays of each point cost so many nanoseconds."""
-    end, every, state = load_three(points.lifted, v), np.int64(answers.open[v]), i64_at(room.state)
+    end, every, state = load_three(points.lifted, v), np.int64(answers.open[v]), i64_at(scratch.state)
     # Points that may see some sample, those that have bits of samples, and those that are asked about no more.
     live, begun, left = every, np.int64(0), np.int64(0)
     before = state[LATEST] if prepared else np.int64(-1)
     if before >= 0:  # what hid the neighbours may hide these
-        triangle = _prepared_at(room, before)
-        live, begun, left = _ask(triangle, end, lamp, live, begun, left, cost, room, counts)
+        triangle = _prepared_at(scratch, before)
+        live, begun, left = _ask(triangle, end, lamp, live, begun, left, cost, scratch, counts)
     for batch in range(batches_of(found)):
         if live & ~left == 0:
             break
-        made = room.prepared + PREPARED * batch * prepared
+        made = scratch.prepared + PREPARED * batch * prepared
         if not prepared:
-            prepare_in_tree(o, lamp, room.numbers + 64 * batch, made)
+            prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
         met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
         while met != 0 and live & ~left != 0:
             lane = lowest_bit(met)
@@ -114,29 +114,29 @@ def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, room, c
             if LANES * batch + lane == before:
                 continue
             many = ones(live)
-            live, begun, left = _ask(made + 4 * lane, end, lamp, live, begun, left, cost, room, counts)
+            live, begun, left = _ask(made + 4 * lane, end, lamp, live, begun, left, cost, scratch, counts)
             if ones(live) < many:
                 state[LATEST] = LANES * batch + lane
     answers.full[v] = every & ~live
     answers.lit[v] = live & ~begun
     answers.partly[v] = live & begun
-    _write_bits(answers, v, live & begun, lamp.groups, room)
+    _write_bits(answers, v, live & begun, lamp.groups, scratch)
 
 
 @inlined
-def _prepared_at(room, k):
+def _prepared_at(scratch, k):
     """Where the numbers of the k-th prepared primitive are."""
-    return room.prepared + PREPARED * (k // LANES) + 4 * (k % LANES)
+    return scratch.prepared + PREPARED * (k // LANES) + 4 * (k % LANES)
 
 
 @subkernel
-def _ask(triangle, end, lamp, live, begun, left, cost, room, counts):
+def _ask(triangle, end, lamp, live, begun, left, cost, scratch, counts):
     """Ask a prepared triangle about sixteen points, `end`, and perhaps their samples: which of them are live, begun and
     left (`ask_vector`) from now on."""
-    asked, state, open_ = i32_at(room.asked), i64_at(room.state), live & ~left
+    asked, state, open_ = i32_at(scratch.asked), i64_at(scratch.state), live & ~left
     counts[TESTS] += ones(open_)
     state[EFFORT] += FOR_POINTS
-    hidden, missed, can = ask_points(triangle, end, lamp.light, lamp.radius, room.kept)
+    hidden, missed, can = ask_points(triangle, end, lamp.light, lamp.radius, scratch.kept)
     live &= ~hidden
     unsure = open_ & ~(hidden | missed)
     while unsure != 0:
@@ -146,22 +146,22 @@ def _ask(triangle, end, lamp, live, begun, left, cost, room, counts):
         if begun & bit == 0:
             begun |= bit
             asked[lane] = 0
-            _begin_bits(room, lane, lamp.groups)
+            _begin_bits(scratch, lane, lamp.groups)
         asked[lane] += 1
         if asked[lane] > worth_asking(lamp, cost):
             left |= bit
-            _leave_bits(room, lane, lamp.groups)
-        elif _ask_samples(triangle, lane, can & bit != 0, lamp, lane, room):
+            _leave_bits(scratch, lane, lamp.groups)
+        elif _ask_samples(triangle, lane, can & bit != 0, lamp, lane, scratch):
             live &= ~bit
     return live, begun, left
 
 
 @subkernel
-def ask_each(o, points, answers, v, lamp, lamps, cost, room, counts):
+def ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts):
     """Ask about the points of a vector, which lie far apart, one by one: each has a beam of its own.
 
     Group and vector have no primitives in common then: what was found of these is overwritten."""
-    beam, every, state, partly = make_beam(), np.int64(answers.open[v]), i64_at(room.state), np.int64(0)
+    beam, every, state, partly = make_beam(), np.int64(answers.open[v]), i64_at(scratch.state), np.int64(0)
     some = every
     while some != 0:
         lane = lowest_bit(some)
@@ -172,17 +172,17 @@ def ask_each(o, points, answers, v, lamp, lamps, cost, room, counts):
         if not put_cone(beam, end, normal, lamp.light, lamp.radius, lamps.within):
             continue
         if state[HIDING] != 0:  # what hid another may hide this one
-            hidden, _, _ = ask_triangles(room.hiding, end, lamp.light, lamp.radius, room.kept)
+            hidden, _, _ = ask_triangles(scratch.hiding, end, lamp.light, lamp.radius, scratch.kept)
             state[EFFORT] += FOR_POINTS
             if hidden != 0:
                 answers.full[v] |= bit
                 continue
-        found = find_primitives(o, lamp.number, beam, OF_POINT, room, counts)
+        found = find_primitives(o, lamp.number, beam, OF_POINT, scratch, counts)
         if found < 0:
             continue
         if passes_by(beam, lamps.moving):
             answers.alone[v] |= bit
-        sees = _ask_point(o, lamp, end, lane, found, cost, room, counts)
+        sees = _ask_point(o, lamp, end, lane, found, cost, scratch, counts)
         if sees == HIDDEN:
             answers.full[v] |= bit
         elif sees == SEEN:
@@ -190,23 +190,23 @@ def ask_each(o, points, answers, v, lamp, lamps, cost, room, counts):
         else:
             partly |= bit
     answers.partly[v] = partly
-    _write_bits(answers, v, partly, lamp.groups, room)
+    _write_bits(answers, v, partly, lamp.groups, scratch)
 
 
 @subkernel
-def _ask_point(o, lamp, end, lane, found, cost, room, counts):
+def _ask_point(o, lamp, end, lane, found, cost, scratch, counts):
     """Ask the primitives that were found about one point, whose rays cost so many nanoseconds: HIDDEN, SEEN, or PARTLY
     with bits in its lane."""
-    state, asked = i64_at(room.state), 0
+    state, asked = i64_at(scratch.state), 0
     for batch in range(batches_of(found)):
-        made = room.prepared
-        prepare_in_tree(o, lamp, room.numbers + 64 * batch, made)
+        made = scratch.prepared
+        prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
         counts[TESTS] += ones(lanes_below(found, batch))
         state[EFFORT] += FOR_POINTS
-        hidden, missed, can = ask_triangles(made, end, lamp.light, lamp.radius, room.kept)
+        hidden, missed, can = ask_triangles(made, end, lamp.light, lamp.radius, scratch.kept)
         if hidden != 0:
             for at in range(0, PREPARED, 64):
-                store(room.hiding + at, load_f32x16(made + at))
+                store(scratch.hiding + at, load_f32x16(made + at))
             state[HIDING] = 1
             return HIDDEN
         unsure = lanes_below(found, batch) & ~missed
@@ -214,12 +214,12 @@ def _ask_point(o, lamp, end, lane, found, cost, room, counts):
             k = lowest_bit(unsure)
             unsure &= unsure - 1
             if asked == 0:
-                _begin_bits(room, lane, lamp.groups)
+                _begin_bits(scratch, lane, lamp.groups)
             asked += 1
             if asked > worth_asking(lamp, cost):
-                _leave_bits(room, lane, lamp.groups)
+                _leave_bits(scratch, lane, lamp.groups)
                 return PARTLY
-            if _ask_samples(made + 4 * k, k, (can >> k) & 1 != 0, lamp, lane, room):
+            if _ask_samples(made + 4 * k, k, (can >> k) & 1 != 0, lamp, lane, scratch):
                 return HIDDEN
     return PARTLY if asked > 0 else SEEN
 
@@ -232,33 +232,33 @@ def worth_asking(lamp, cost):
 
 
 @inlined
-def _begin_bits(room, lane, groups):
+def _begin_bits(scratch, lane, groups):
     """No sample is known to be hidden from the point in a lane, and none is unsure."""
     for at in range(4 * GROUPS * lane, 4 * GROUPS * lane + 4 * groups, 64):
-        store(room.blocked + at, i32x16(0))
-        store(room.unsure + at, i32x16(0))
+        store(scratch.blocked + at, i32x16(0))
+        store(scratch.unsure + at, i32x16(0))
 
 
 @inlined
-def _leave_bits(room, lane, groups):
+def _leave_bits(scratch, lane, groups):
     """All samples are unsure that are not known to be hidden from the point in a lane."""
     for at in range(4 * GROUPS * lane, 4 * GROUPS * lane + 4 * groups, 64):
-        store(room.unsure + at, i32x16(-1))
+        store(scratch.unsure + at, i32x16(-1))
 
 
 @inlined
-def _ask_samples(triangle, kept_lane, can, lamp, lane, room):
-    """Ask a triangle about the samples of the point in a lane, of which `room.kept` has a lane; whether all are
+def _ask_samples(triangle, kept_lane, can, lamp, lane, scratch):
+    """Ask a triangle about the samples of the point in a lane, of which `scratch.kept` has a lane; whether all are
     hidden."""
-    i64_at(room.state)[EFFORT] += FOR_POINT + FOR_SAMPLES * lamp.groups
+    i64_at(scratch.state)[EFFORT] += FOR_POINT + FOR_SAMPLES * lamp.groups
     at = 4 * GROUPS * lane
     return ask_samples(
-        triangle, room.kept, kept_lane, can, room.samples, lamp.groups, room.blocked + at, room.unsure + at
+        triangle, scratch.kept, kept_lane, can, scratch.samples, lamp.groups, scratch.blocked + at, scratch.unsure + at
     )
 
 
 @subkernel
-def _write_bits(answers, v, lanes, groups, room):
+def _write_bits(answers, v, lanes, groups, scratch):
     """Write the bits of samples of some of a vector's points into their rows."""
     for word in range((groups + 1) // 2):
         blocked, unblocked = answers.blocked[word], answers.unblocked[word]
@@ -267,9 +267,9 @@ def _write_bits(answers, v, lanes, groups, room):
             lane = lowest_bit(some)
             some &= some - 1
             at = 4 * (GROUPS * lane + 2 * word)
-            hidden, doubt = np.int64(load_i32(room.blocked + at)), np.int64(load_i32(room.unsure + at))
+            hidden, doubt = np.int64(load_i32(scratch.blocked + at)), np.int64(load_i32(scratch.unsure + at))
             if 2 * word + 1 < groups:
-                hidden |= np.int64(load_i32(room.blocked + at + 4)) << 16
-                doubt |= np.int64(load_i32(room.unsure + at + 4)) << 16
+                hidden |= np.int64(load_i32(scratch.blocked + at + 4)) << 16
+                doubt |= np.int64(load_i32(scratch.unsure + at + 4)) << 16
             blocked[16 * v + lane] = np.int32(hidden)
             unblocked[16 * v + lane] = np.int32(~(hidden | doubt))

@@ -25,7 +25,7 @@ from tracer.neighbours.area_lights.area_light_query import (
     OF_GROUP,
     OF_VECTOR,
     STATE,
-    Room,
+    Scratch,
     ask_each,
     ask_vector,
     batches_of,
@@ -52,7 +52,7 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
     lamps, o, beam = certified.lamps, certified.occluders, make_beam()
     place, radius = lamps.places[number], lamps.radii[number]
     light, many = (place[0], place[1], place[2]), np.int64(lamps.samples[number])
-    room = Room(
+    scratch = Scratch(
         samples=local_memory(SAMPLES),
         numbers=local_memory(NUMBERS),
         prepared=local_memory(ALL_PREPARED),
@@ -63,10 +63,10 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
         state=local_memory(STATE),
         hiding=local_memory(PREPARED),
     )
-    start_lamp(room)
-    groups = put_samples(samples, first, many, light, room.samples)
+    start_lamp(scratch)
+    groups = put_samples(samples, first, many, light, scratch.samples)
     lamp = Lamp(number, light, radius, groups)
-    state, cost = i64_at(room.state), many * lamps.ray_cost  # of a point's rays
+    state, cost = i64_at(scratch.state), many * lamps.ray_cost  # of a point's rays
     most = min(OF_VECTOR, LANES * cost // FOR_POINTS)
     balance = ADVANCE * LANES * cost
     for start in range(0, vectors(count), GROUP):
@@ -79,9 +79,9 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
             continue
         found = np.int64(-1)
         if some > 1 and put_beam(beam, points, answers.open, start, end, light, radius, lamps.within):
-            found = find_primitives(o, number, beam, min(OF_GROUP, most), room, counts)
+            found = find_primitives(o, number, beam, min(OF_GROUP, most), scratch, counts)
             for batch in range(batches_of(found)):
-                prepare_in_tree(o, lamp, room.numbers + 64 * batch, room.prepared + PREPARED * batch)
+                prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, scratch.prepared + PREPARED * batch)
         state[LATEST] = -1
         away = found >= 0 and passes_by(beam, lamps.moving)
         for v in range(start, end):
@@ -91,15 +91,15 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
                 answers.lit[v] = answers.alone[v] = answers.open[v]
             elif put_beam(beam, points, answers.open, v, v + 1, light, radius, lamps.within):
                 state[EFFORT] += FOR_BEAM
-                known = found if found >= 0 else find_primitives(o, number, beam, most, room, counts)
+                known = found if found >= 0 else find_primitives(o, number, beam, most, scratch, counts)
                 if known >= 0:
                     if away or passes_by(beam, lamps.moving):
                         answers.alone[v] = answers.open[v]
-                    ask_vector(o, points, answers, v, lamp, beam, known, found > 0, cost, room, counts)
+                    ask_vector(o, points, answers, v, lamp, beam, known, found > 0, cost, scratch, counts)
                 else:
-                    ask_each(o, points, answers, v, lamp, lamps, cost, room, counts)
+                    ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts)
             elif found < 0:
-                ask_each(o, points, answers, v, lamp, lamps, cost, room, counts)
+                ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts)
             # A packet with half its rays left takes more than half the time: the more are known, the more each saves.
             answered, due = decided(answers, v, many), many * ones(np.int64(answers.open[v]))
             saved = lamps.ray_cost * answered * answered // due
@@ -116,7 +116,7 @@ def _open_points(points, answers, light, radius, start, end, count):
         px, py, pz = load_three(points.position, v)
         gx, gy, gz = load_three(points.geometric, v)
         x, y, z = light[0] - px, light[1] - py, light[2] - pz
-        room = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
-        answers.open[v] = bits_of(gx * x + gy * y + gz * z > -room) & lanes_below(count, v)
+        scratch = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
+        answers.open[v] = bits_of(gx * x + gy * y + gz * z > -scratch) & lanes_below(count, v)
         some += answers.open[v] != 0
     return some

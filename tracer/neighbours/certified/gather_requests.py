@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.certified.cells import NORMAL, ROOTS, add_cell
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.visibility.error_bounds import cross, dot, row_of
@@ -107,7 +107,7 @@ def gather_tasks(cells, o, lights, stationary, key, u, v, patience, slots, point
     key (n,) int32 are the cells that requests lie in, or -1 - owner where there is none yet; u and v (n,) float32 their
     coordinates; points the `RequestPoints` for n.  Roots that `patience` points have requested, this time or before,
     are made; there must be room.  slots (room for cells and owners,) int32 are 0, and are again afterwards."""
-    cells, o, points = borrowed(cells), borrowed(o), borrowed(points)
+    cells, o, points = without_refcount((cells, o, points))
     n, rooms, groups = len(key), len(cells.words), np.int64(0)
     # Group requests by their key.
     of, keys, size = np.empty(n, np.int32), np.empty(2 * n, np.int32), np.zeros(2 * n, np.int32)

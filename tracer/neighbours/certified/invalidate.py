@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.modes import FULLY_RENDERED
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.certified.cell_prism import put_cell
 from tracer.neighbours.certified.cells import (
     CANDIDATES,
@@ -57,7 +57,7 @@ def invalidate_certificates(cells, o, lights, scale, gone, boxes, near, s):
     `SceneScale`, o the `Occluders`, s a worker's `Scratch`.  near (primitives,) are words like modes, without the bits
     of those lights from which something in a box may come before a primitive.  A cell that took its certificate over
     from another loses it with that one."""
-    cells, o, s = borrowed(cells), borrowed(o), borrowed(s)
+    cells, o, s = without_refcount((cells, o, s))
     dropped = np.zeros(cells.used[0], np.uint64)
     for cell in range(1, cells.used[0]):
         word, owner, parent = cells.words[cell], np.int64(cells.owner[cell]), np.int64(cells.parent[cell])
@@ -90,7 +90,7 @@ def invalidate_certificates(cells, o, lights, scale, gone, boxes, near, s):
 @kernel
 def copy_kept(cells, kept, target):
     """Copy the cells of those owners that are `kept` (owners,) bool to a target with room, and lead rays there."""
-    cells, target = borrowed(cells), borrowed(target)
+    cells, target = without_refcount((cells, target))
     place, moved = np.zeros(cells.used[0], np.int32), np.zeros(cells.named[0], np.int32)
     roots = cells.receivers.view(np.int32)
     for cell in range(1, cells.used[0]):

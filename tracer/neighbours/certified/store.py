@@ -1,7 +1,7 @@
 """The store of certificates: all that is proved of a world's cells, kept up to date with what moves.
 
 What is static has cells: geometry that never moves, and an object for as long as it rests.  In each frame the store
-first follows what has moved (`follow`), which drops the certificates that no longer hold and no others.  The scheduler
+first follows what has moved (`update`), which drops the certificates that no longer hold and no others.  The scheduler
 then adds to it (`gather`, `certify`), kernels look cells up in it (`view`), and in the end it is held within a memory
 (`keep_within`).
 """
@@ -147,7 +147,7 @@ class CertificateStore:
 
     # --- what moves -------------------------------------------------------------------------------------
 
-    def follow(self, lamps: Lamps, resting: Resting, threads: int) -> None:
+    def update(self, lamps: Lamps, resting: Resting, threads: int) -> None:
         """Drop what no longer holds, with lights and objects where they are now, and nothing else.
 
         A point light is certified once it has not moved for a frame.  What is known of a lamp's rays serves one frame,
@@ -178,11 +178,11 @@ class CertificateStore:
         if not len(started.which) and not len(stopped.which):
             return
         outlines = self._world.outlines()
-        self._static.follow(started.which, stopped.which, outlines)
+        self._static.update(started.which, stopped.which, outlines)
         if self._static.largest > self.scale.max_coordinate:  # rays may end higher than cells reach
             self._start()
             started, stopped = changes(self._resting, resting)
-            self._static.follow(started.which, stopped.which, outlines)
+            self._static.update(started.which, stopped.which, outlines)
             self._rescale()
         else:
             self._invalidate(started, stopped, outlines)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.certified.cell_prism import put_cell
 from tracer.neighbours.certified.cells import (
     CANDIDATES,
@@ -222,7 +222,7 @@ def run_tasks(cells, o, lights, stationary, scale, first, last, tasks, points, p
     Certificates are for those of lights (n, 3) float32 that are `stationary` (n,) bool, `most` at a time.  A leaf is
     divided once `patience` points have requested it, but not for a light with no more than `few` candidates, which rays
     will test.  counts (COUNTERS,) int64 are added to."""
-    cells, o, tasks, points, s = borrowed(cells), borrowed(o), borrowed(tasks), borrowed(points), borrowed(s)
+    cells, o, tasks, points, s = without_refcount((cells, o, tasks, points, s))
     for task in range(first, last):
         _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience, few, most, s, counts)
 

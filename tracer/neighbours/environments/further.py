@@ -48,12 +48,12 @@ class FurtherLights:
         """Memory that the lists take, in bytes."""
         return 4 * self.used + sum(leaves.nbytes for leaves in {id(a): a for a in self._leaves.values()}.values())
 
-    def follow(self, lamps: Lamps, known: NDArray[np.bool_]) -> bool:
+    def update(self, lamps: Lamps, known: NDArray[np.bool_]) -> bool:
         """Lights are where these lamps have them now: say of which (lights,) anything is `known`.  One that has moved
         counts everywhere; where many have, all is to be proved anew, and this is true."""
         if self._hidden is None:
             return False
-        anew = self._hidden.follow(boxes_of_samples(lamps)[self.numbers])
+        anew = self._hidden.update(boxes_of_samples(lamps)[self.numbers])
         known[self.numbers] = ~self._hidden.moved
         return anew
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.environments.octree import HIDDEN, LIT, UNKNOWN
 from tracer.runtime.kernels import kernel
-from tracer.visibility.box_candidates import MOST, come_between, forget_occluders, make_room
+from tracer.visibility.box_candidates import MOST, come_between, forget_occluders, make_scratch
 from tracer.visibility.budget import CERTIFICATES
 from tracer.visibility.error_bounds import LANES
 
@@ -22,7 +22,7 @@ def settle(o, light, boxes, above, names, rounded, codes, found, counts):
     Where blockers are left, the code is their number, and they are in found (n, MOST) int32: more than MOST are not
     named and make UNKNOWN.  names (m,) are those of the cells around.  o are `Occluders`; rounded is more, in units of
     the scene, than planes are wrong by in float32.  counts (COUNTERS,) int64 are added to."""
-    o, room, met = borrowed(o), make_room(), np.zeros(MOST + 2 * LANES, np.int32)
+    o, scratch, met = without_refcount(o), make_scratch(), np.zeros(MOST + 2 * LANES, np.int32)
     for i in range(len(boxes)):
         code = above[i]
         if code in (HIDDEN, LIT):
@@ -33,9 +33,9 @@ def settle(o, light, boxes, above, names, rounded, codes, found, counts):
             given, start = np.int64(names[code]), np.int64(code) + 1
         half = 0.5 * (boxes[i, 3] - boxes[i, 0])
         middle = boxes[i, 0] + half, boxes[i, 1] + half, boxes[i, 2] + half
-        forget_occluders(room)
+        forget_occluders(scratch)
         counts[CERTIFICATES] += 1
-        count = come_between(o, light, room, middle, half, rounded, names[start:], given, met, counts)
+        count = come_between(o, light, scratch, middle, half, rounded, names[start:], given, met, counts)
         codes[i] = UNKNOWN if count > MOST else (HIDDEN if count < 0 else count)
         for k in range(max(0, min(count, MOST))):
             if count <= MOST:

@@ -108,7 +108,7 @@ class EnvironmentStore:
 
     # Following what moves.
 
-    def follow(self, lamps: Lamps, resting: Resting) -> None:
+    def update(self, lamps: Lamps, resting: Resting) -> None:
         """Lights are where these lamps have them now, and this rests."""
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.frame.per_unit > ROOM / 4
         moved = (lamps.places != self.places).any(1)
@@ -129,7 +129,7 @@ class EnvironmentStore:
             )
             for light in numbers:
                 self.geometry.occluders.light_space[light][self._flat] = NEVER_HIT
-        if self.further.follow(lamps, self._known):
+        if self.further.update(lamps, self._known):
             self._begin_cells()
 
     def _forget(self, lights: NDArray[np.int64]) -> None:

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.lightbuffer.cube import SEAM, axes_of
 from tracer.neighbours.lightbuffer.shapes import (
     BLOCKED,
@@ -227,10 +227,8 @@ def divide_face(items, spans, count, face, side, longest, cells, records, lists,
     There is room for a record of each cell, and `longest` list entries.  arena (a,) int32 has room for all items as
     often as regions lie in one another, and LANES more each time; found (FOUND, n + LANES) float32 and alone (n,) int32
     are memory.  What it came to is added to state (CAME_TO,) int64."""
-    items, spans, cells, records, lists = (
-        borrowed(items), borrowed(spans), borrowed(cells), borrowed(records), borrowed(lists),
-    )  # fmt: skip
-    arena, found, alone, state = borrowed(arena), borrowed(found), borrowed(alone), borrowed(state)
+    items, spans, cells, records, lists = without_refcount((items, spans, cells, records, lists))
+    arena, found, alone, state = without_refcount((arena, found, alone, state))
     waiting = np.empty((DEPTH, WAITING), np.int64)
     for k in range(count):
         arena[k], alone[k] = k, -1

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.lightbuffer.cube import axes_of
 from tracer.neighbours.lightbuffer.shapes import (
     COVERS,
@@ -235,9 +235,7 @@ def put_items(rows, radii, light, face, sure, farthest, numbers, items, spans):
 
     rows (n, ROW), with their error radii, as seen from light (3,) float32 by rays that are no longer than `farthest`;
     those that are shorter than `sure` are certain of hits.  numbers (n + LANES,) int32 is memory."""
-    rows, radii, numbers, items, spans = (
-        borrowed(rows), borrowed(radii), borrowed(numbers), borrowed(items), borrowed(spans),
-    )  # fmt: skip
+    rows, radii, numbers, items, spans = without_refcount((rows, radii, numbers, items, spans))
     count, axes, n = _may_be_seen(rows, radii, light, face, numbers), axes_of(face), 0
     l0, l1, l2 = np.float64(light[0]), np.float64(light[1]), np.float64(light[2])
     for k in range(count):

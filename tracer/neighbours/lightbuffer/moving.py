@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.lightbuffer.cube import FACES, SEAM, axes_of
 from tracer.runtime.kernels import kernel
 
@@ -20,7 +20,7 @@ WIDER = 1e-4  # of coordinates and distances, by which boxes are taken to be lar
 @kernel
 def _put_boxes(boxes, light, side, depths):
     """Put the least depth of any of boxes (k, 6), as seen from light (3,), into depths (FACES, side, side)."""
-    boxes, depths = borrowed(boxes), borrowed(depths)
+    boxes, depths = without_refcount((boxes, depths))
     depths[:] = FAR
     for k in range(len(boxes)):
         box = boxes[k]

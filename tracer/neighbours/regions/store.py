@@ -61,7 +61,7 @@ class RegionStore:
         self._clock = clock
         #: What hides lights.
         self.hidden = HiddenLights(world)
-        self.follow(lamps)
+        self.update(lamps)
 
     def _forget(self) -> None:
         self.grid: Grid = make_grid(self.hidden.bounds)
@@ -77,9 +77,9 @@ class RegionStore:
         blocks = [block.leaves for block in self._blocks.values()]
         return sum(a.nbytes for arrays in (self._starts, self._lights, blocks) for a in arrays)
 
-    def follow(self, lamps: Lamps) -> None:
+    def update(self, lamps: Lamps) -> None:
         """Lights are where these lamps have them now."""
-        if self.hidden.follow(boxes_of_samples(lamps)):
+        if self.hidden.update(boxes_of_samples(lamps)):
             self._forget()
 
     def certify(self, budget: Budget, threads: int, cancel: Callable[[], bool] | None = None) -> Counts:

@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, add_shadow
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.voxels.grid import BLOCK, ROOM
 from tracer.runtime.kernels import kernel, subkernel
 from tracer.simd import i64_at, local_memory
-from tracer.visibility.box_candidates import MOST, come_between, forget_occluders, make_room
+from tracer.visibility.box_candidates import MOST, come_between, forget_occluders, make_scratch
 from tracer.visibility.budget import CERTIFICATES
 from tracer.visibility.error_bounds import LANES
 
@@ -37,8 +37,8 @@ def classify_blocks(o, grid, words, light, rounded, blocks, counts):
 
     o are `Occluders` whose only light that is; words are `Words` of voxels; rounded is more, in units of the scene,
     than planes are wrong by in float32.  counts (COUNTERS,) int64 are added to."""
-    o = borrowed(o)
-    room, of_depth = make_room(), np.zeros((DEPTHS, MOST + 2 * LANES), np.int32)  # what a node's shaft meets
+    o = without_refcount(o)
+    scratch, of_depth = make_scratch(), np.zeros((DEPTHS, MOST + 2 * LANES), np.int32)  # what a node's shaft meets
     met = np.zeros(DEPTHS, np.int64)  # how many primitives each depth has found
     waiting, side = i64_at(local_memory(NODES)), 1.0 / grid.per_unit
     many_y, many_z = grid.ny // BLOCK, grid.nz // BLOCK
@@ -46,7 +46,7 @@ def classify_blocks(o, grid, words, light, rounded, blocks, counts):
         x, yz = block // (many_y * many_z), block % (many_y * many_z)
         waiting[0], waiting[1], waiting[2] = x * BLOCK, yz // many_z * BLOCK, yz % many_z * BLOCK
         waiting[3], waiting[4], pending = BLOCK, 0, 1
-        forget_occluders(room)
+        forget_occluders(scratch)
         while pending > 0:
             pending -= 1
             at = 5 * pending
@@ -61,7 +61,7 @@ def classify_blocks(o, grid, words, light, rounded, blocks, counts):
             found, given, above = of_depth[depth], np.int64(MOST + 1), of_depth[max(depth, 1) - 1]
             if depth > 0:
                 given = met[depth - 1]
-            count = come_between(o, light, room, middle, half, rounded, above, given, found, counts)
+            count = come_between(o, light, scratch, middle, half, rounded, above, given, found, counts)
             if count < 0:
                 _fill(words, grid, light.number, x, y, z, size, FULL_SHADOW)
             elif count == 0:

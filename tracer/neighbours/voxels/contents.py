@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.memory import borrowed
+from tracer.geometry.memory import without_refcount
 from tracer.neighbours.voxels.grid import ROOM
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.visibility.error_bounds import BOX, cross, dot, row_of
@@ -58,7 +58,7 @@ def list_contents(rows, reach, more, grid, starts, names):
 
     rows (n, ROW) float32; reach (n,) float32, how far from each a hit may be reported: negative for those of which none
     is, and inf for those of which only the box (6,) at BOX tells that, `more` units of the scene larger."""
-    rows, counts = borrowed(rows), len(names) == 0
+    rows, counts = without_refcount(rows), len(names) == 0
     side = 1.0 / grid.per_unit
     half = 0.5 * side
     for i in range(len(rows)):

@@ -99,7 +99,7 @@ class VoxelStore:
             said.append(f"There is memory for {self._held} of {lights} lights; rays to the others are traced.")
         return " ".join(said)
 
-    def follow(self, lamps: Lamps, resting: Resting) -> None:
+    def update(self, lamps: Lamps, resting: Resting) -> None:
         """Lights are where these lamps have them now, and this rests."""
         single = np.diff(lamps.first) == 1
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.grid.per_unit > ROOM / 4

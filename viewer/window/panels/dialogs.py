@@ -145,6 +145,13 @@ def _ask(ui: Ui, state: OpenFileState) -> None:
     entered = imgui.button("Open", ImVec2(em(6.0), 0.0)) or entered
     imgui.same_line()
     cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or cancelled
+    saved = ui.controller.preferences.picture_folder.absolute()
+    imgui.same_line()
+    imgui.begin_disabled(state.folder == saved or not saved.is_dir())
+    if imgui.button("Saved pictures"):
+        state.folder = saved
+        state.type("")
+    imgui.end_disabled()
     path = state.folder / os.path.expanduser(state.typed.strip())
     opened = False
     if entered and state.typed.strip() and path.is_dir():

@@ -11,7 +11,7 @@ from viewer.output.figure1 import figure_of
 from viewer.output.figure1_drawing import BOX, QUIET, STRONG, TEXT, TIME, Arrow, Box, Drawing, Words, arrange, lay_out
 from viewer.window import widgets
 from viewer.window.panels import status
-from viewer.window.style import BLUE
+from viewer.window.style import TEAL
 from viewer.window.ui import Ui
 from viewer.window.widgets import em, packed, paragraph, tooltip_at, width_of
 
@@ -58,7 +58,7 @@ _INKS = {BOX: imgui.Col_.frame_bg, TEXT: imgui.Col_.text, STRONG: imgui.Col_.tex
 
 
 def _color(ink: str) -> int:
-    fixed = {TIME: BLUE, QUIET: widgets.QUIET}
+    fixed = {TIME: TEAL, QUIET: widgets.QUIET}
     return imgui.get_color_u32(fixed[ink] if ink in fixed else imgui.get_style_color_vec4(_INKS[ink]))
 
 

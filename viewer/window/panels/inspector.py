@@ -182,7 +182,7 @@ def _other_lights(
     wanted = [found.reasons[light] for light in lights.found(ui, "inspector") if light < len(found.reasons)]
     if many and point is not None:
         wanted.sort(key=lambda one: (not one.wrong, math.dist(places[one.light], point)))
-    else:
+    elif not ui.controller.motion.is_animating:  # else lines would jump from frame to frame
         wanted.sort(key=telling)
     for one in wanted[:_MOST_LIGHTS]:
         if one is not chosen:

@@ -133,8 +133,6 @@ def show_missing(ui: Ui, corner: ImVec2, end: ImVec2) -> None:
         imgui.begin_disabled(run is not None)
         if found.base and imgui.button(f"Use {title_of(found.base)}###instead"):
             c.settings.change(method=with_base(c.session.settings.method, found.base))
-        if found.accelerator and imgui.button(f"Use {found.accelerator}###instead"):
-            c.settings.change(accelerator=found.accelerator)
         imgui.end_disabled()
         if run is not None:
             tooltip(f"Not while the {run.name} runs. Escape stops it.")

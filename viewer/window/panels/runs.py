@@ -186,7 +186,7 @@ def start_or_progress(ui: Ui, run: Run | None, start: Callable[[], None], tip: s
         return
     left = run.seconds_left
     imgui.progress_bar(run.fraction, ImVec2(-1.0, 0.0), "" if left is None else f"{duration(left)} left")
-    clipped(run.label if run.traced else "Starting ...", QUIET)
+    clipped(run.label, QUIET)
     tip = f"Keep what is done{ui.key('Stop, or clear the selection')}"
     if run.stopping:
         imgui.text_colored(QUIET, "Stopping ...")

@@ -28,14 +28,17 @@ def show(ui: Ui) -> None:
         if wide_button("Close"):
             tour.end()
             return
-    elif tour.is_done:
-        if wide_button(f"{icons.ICON_FA_CHECK}  Done: the next step"):
-            tour.skip()
     else:  # above the text, so that no text moves them, and without tips, which would cover it
-        if wide_button(f"{icons.ICON_FA_PLAY}  Show me", columns=2):
-            tour.show()
+        done = tour.is_done
+        if wide_button(f"{icons.ICON_FA_CHECK}  Done" if done else f"{icons.ICON_FA_PLAY}  Show me", columns=3):
+            (tour.skip if done else tour.show)()
         imgui.same_line()
-        if wide_button("Skip", columns=2):
+        imgui.begin_disabled(step is STEPS[0])
+        if wide_button("Back", columns=3):
+            tour.back()
+        imgui.end_disabled()
+        imgui.same_line()
+        if wide_button("Next", columns=3):
             tour.skip()
     text = tour.text(step) if ui.controller.frame is not None else "You can begin as soon as there is a picture."
     paragraph(text, QUIET)

@@ -38,7 +38,7 @@ _PLAIN: dict[int, Any] = {
 
 
 @cache
-def interpreted(kernel: Any) -> Any:
+def as_python(kernel: Any) -> Any:
     """A kernel of arithmetic as a function of Python; raises AttributeError for what is no kernel."""
     plain = kernel.py_func
     scope = dict(plain.__globals__)
@@ -47,5 +47,5 @@ def interpreted(kernel: Any) -> Any:
         if id(used) in _PLAIN:
             scope[name] = _PLAIN[id(used)]
         elif hasattr(used, "py_func"):
-            scope[name] = interpreted(used)
+            scope[name] = as_python(used)
     return FunctionType(plain.__code__, scope, plain.__name__, plain.__defaults__)
