@@ -13,7 +13,7 @@ from tests.scenes import loaded
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.shades import shadow_scene
 from tracer.culling.fate import FATE, Fate
-from tracer.culling.modes import OcclusionMode, ShadowMode
+from tracer.culling.modes import OcclusionMode, ShadowMode, shadow_mode
 from tracer.settings import RECORDS
 from viewer.util.resources import embedded_scenes
 
@@ -87,6 +87,32 @@ def test_fates_are_those_of_the_modes_that_the_frame_before_has_left(method: str
 
     check()
     assert met >= {Fate.CULLED, Fate.DYNAMIC_ONLY, *BY_MODES}
+
+
+@pytest.mark.parametrize("method", ["paper", "cells"])
+def test_shadow_modes_gain_what_traced_rays_have_found_and_nothing_else(method: str) -> None:
+    """In scenes in which nothing moves, without bounces, so that a ray's answer is what the picture shows (§2.5)."""
+    gained = 0
+
+    @given(walk=walks())
+    @quickly(6)
+    def check(walk: Walk) -> None:
+        nonlocal gained
+        still = replace(walk.scene, objects=walk.scene.objects[:1])
+        renderer = tracer.Renderer(still, replace(SETTINGS, method=method, record_lights=True))
+        for _, camera in walk.frames[:4]:
+            frame = renderer.render(0.0, camera)
+            assert frame.due is not None and frame.lit is not None
+            for light in range(frame.lights):
+                traced = frame.due[..., light] & (frame.fate(light) >= Fate.PARTLY_OCCLUDED)
+                expected = shadow_mode(frame.modes_before, light)
+                found = np.where(frame.lit[..., light], ShadowMode.NON_SHADOW, ShadowMode.FULL_SHADOW)
+                np.bitwise_or.at(expected, frame.cell[traced], found[traced].astype(expected.dtype))
+                assert np.array_equal(shadow_mode(frame.modes, light), expected)
+                gained += np.count_nonzero(expected != shadow_mode(frame.modes_before, light))
+
+    check()
+    assert gained > 100
 
 
 @pytest.mark.parametrize("method", ("none", "certified+cache", "lightbuffer", "voxels", "free"))

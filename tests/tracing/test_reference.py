@@ -60,9 +60,12 @@ def test_frames_of_random_scenes_are_those_of_the_reference(lights: int, example
         fast, reference = renderers(
             walk.scene, width=34, height=14, depth=depth, symmetric=symmetric, zoom_factor=zoom_factor
         )
-        for time, camera in walk.frames:
+        none = tracer.Renderer(walk.scene, replace(fast.settings, method="none"), world=reference.world)
+        for number, (time, camera) in enumerate(walk.frames):
             expected = reference.render(time, camera)
             assert_same(fast.render(time, camera), expected, lights)
+            if number == 0:  # nothing is culled yet
+                assert np.array_equal(none.render(time, camera).color, expected.color)
             seen.update(expected.counts)
 
     check()
