@@ -76,18 +76,18 @@ def test_modes_beside_any_exact_method_are_the_papers(accelerator: str):
     seen: Counter[str] = Counter()
     settings = {"width": 26, "height": 20, "depth": 2, "accelerator": accelerator}
 
-    @quickly(8)
+    @quickly(5)
     @given(walks(), st.booleans())
     def check(walk: Walk, symmetric: bool) -> None:
         assert not _differing(walk.scene, walk.frames, seen, symmetric=symmetric, **settings)
 
     check()
-    for seed in range(cases(5, 8)):
+    for seed in range(cases(4, 8)):
         walk = nasty_walk(seed)
         assert not _differing(walk.scene, walk.frames, seen, **settings), f"seed {seed}"
-    assert min(seen[f"certified: {name}"] for name in ("culled", "candidates_only")) > 1000
-    assert min(seen[name] for name in ("full", "non", "cache hits")) > 500
-    assert seen["otherwise at rest"] > 10
+    assert min(seen[f"certified: {name}"] for name in ("culled", "candidates_only")) > 500
+    assert min(seen[name] for name in ("full", "non", "cache hits")) > 250
+    assert seen["otherwise at rest"] > 5
     assert seen["none: culled"] == 0
 
 
