@@ -363,5 +363,5 @@ def test_a_method_with_kernels_of_its_own_is_made_ready_by_name() -> None:
     assert not compilation.ready_for("free")
     compilation.make_ready("free", progress=lambda what, fraction: told.append(what))
     compilation.make_ready("free", progress=lambda what, fraction: told.append(what))
-    assert told == ["compiling the kernels of free"] and compilation.ready_for("free")
+    assert told == ["compiling the kernels of Free (answers known)"] and compilation.ready_for("free")
     assert not compilation.ready_for("free", lights=40)
