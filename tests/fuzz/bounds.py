@@ -48,7 +48,7 @@ TOGETHER = 40  # cases of a process, where each is done twice
 # --- cases: what is made first, and what is then done with it on guarded arrays -----------------------
 
 
-def _damaged_file(rng: np.random.Generator, number: int) -> Callable[[], object]:
+def _damaged_file(rng: np.random.Generator, number: int) -> Callable[[], list[np.ndarray] | None]:
     """What is left of a file that somebody has damaged, traced."""
     files = seeds()
     with tempfile.TemporaryDirectory() as folder:
@@ -62,7 +62,7 @@ def _damaged_file(rng: np.random.Generator, number: int) -> Callable[[], object]
     return lambda: readers.trace(read)
 
 
-def _walk(rng: np.random.Generator, number: int) -> Callable[[], object]:
+def _walk(rng: np.random.Generator, number: int) -> Callable[[], list[np.ndarray] | None]:
     """A nasty scene by any method, seen from its own cameras and from where no camera belongs."""
     kind = rng.integers(4)
     walk = flattened_walk(number) if kind == 0 else nasty_walk(number, lights=int(rng.choice([0, 0, 1, 20, 40])))
@@ -111,7 +111,7 @@ def _odd(rng: np.random.Generator, camera: Camera) -> Camera:
     return replace(camera, position=position, angle=float(rng.choice([1e-3, 1.0, 90.0, 179.0])))
 
 
-def _rays(rng: np.random.Generator, number: int) -> Callable[[], object]:
+def _rays(rng: np.random.Generator, number: int) -> Callable[[], list[np.ndarray] | None]:
     """Any rays, infinite and none at all, through triangles, spheres and cones of any size."""
     count = int(rng.choice([1, 2, 7, 100, 3000]))
     corners = rng.normal(size=(count, 3, 3)) * np.exp(rng.uniform(-12, 12, (count, 1, 1)))
