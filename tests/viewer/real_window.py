@@ -31,6 +31,9 @@ from viewer.window.app import App
 
 # There what culling saves is told above the picture, for which methods are timed after each picture.
 MEASURING = ("fitting", "panels", "savings")
+# There pictures have the size of the room that the window has for them; elsewhere they are small.
+FILLING = ("capturing", "experimenting", "figures", "fitting", "flying", "hiding", "resizing", "touring")
+SIZE = (320, 200)
 DOZING = ("explaining",)  # there the window rests when nothing moves: what threads find out must wake it
 
 
@@ -41,7 +44,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
     if name != "touring":
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
-    app.controller.session.set_pace(progressive=True)
+    app.controller.session.set_pace(progressive=True, fixed_size=name not in FILLING, width=SIZE[0], height=SIZE[1])
     app.controller.preferences.savings = name in MEASURING
     app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []

@@ -76,7 +76,7 @@ MISTAKES = {
         ("--view shadow:7", "lights are 0 to 1"),
         ("--view depth:1", "is not a view"),
         ("--view wipe:half", "is not a view; give wipe:PART: half is not a number from 0 to 1"),
-        ("--slice x:0.1", "--slice does nothing in the view color; it is for voxels, tree"),
+        ("--slice x:0.1", "--slice does nothing in the view color; it is for voxels"),
         ("--view voxels --slice q:0.1", "is not a slice"),
         ("--tone sepia", "sepia is not one of none, reinhard, filmic, srgb"),
         ("--white 0", "0 is not a number from 0.01 to 1000"),

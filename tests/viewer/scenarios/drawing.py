@@ -23,7 +23,6 @@ OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS)  # see `culling`
 def views(d: Driver) -> None:
     """Every view by its key, each the same as what the command line would draw, and with its legend in the picture;
     only what must be verified, or counted, is traced for, once, and as little for the views after it."""
-    d.fix_resolution(320, 220)
     d.change(method="paper")
     d.see(View.OCCLUSION)
     assert not d.has(LEGEND), "the panel View has it, and nothing lies over the picture"

@@ -27,7 +27,6 @@ def why(d: Driver) -> None:
     """A culled shadow, and a primitive that is partially occluded: each click is answered by one sentence, at the top
     of the Inspector, and the names in it are links."""
     d.c.settings.change(method="paper")
-    d.fix_resolution(400, 250)
     d.open(ROOM)
     for _ in range(3):
         d.press("T").settle()
