@@ -239,4 +239,4 @@ def figures(d: Driver) -> None:
     assert hidden is OcclusionMode.FULLY_RENDERED, "the card that is hidden on its left is taken for whole"
     d.open(embedded_scenes()["figure4"])
     assert not d.c.session.state.pace.fixed_size, "another scene has the window's size"
-    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 1, "frames")
+    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 0, "a frame")

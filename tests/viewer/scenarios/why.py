@@ -155,7 +155,7 @@ def _in_motion(d: Driver) -> None:
             assert found is not None, "it came and went"
             answers += [found] * (found is not answers[-1])
             times += [time] * (time != times[-1])
-            return len(times) > 20
+            return len(times) > 10
 
         d.wait(many_seen, "a film", 60.0)
         d.c.motion.toggle_play()
