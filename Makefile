@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
+.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist kernel-wheel docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -132,6 +132,10 @@ first:  ## measure how soon a scene shows its first picture and a close-up, by e
 dist:  ## build the wheel and the source distribution, and check them (ARGS="--newest --oldest": install and use them)
 	@tools/environment.sh dev
 	@$(RUN) tools/dist.py $(ARGS)
+
+kernel-wheel:  ## build the wheel shadowcull-kernels: compiled kernels for this platform, Python and numba (minutes)
+	@tools/environment.sh dev
+	@$(RUN) tools/kernels.py
 
 docs:  ## build the documentation in build/docs; every warning is an error
 	@tools/environment.sh dev

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import tracer
-from tests.scenes import loaded
+from tests.scenes import loaded, world_of
 from tests.sweeps import cases
 from tracer.culling.modes import OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 
@@ -99,25 +99,26 @@ def test_the_camera_never_touches_anything(study: tracer.Scene) -> None:
     for frame in range(0, study.frames, cases(20, 2)):
         time = study.frame_time(frame)
         origin = np.asarray(study.camera_at(time).position, np.float32)
-        world = tracer.World(study, time)
+        world = world_of(SCENES / "default.aff", "bvh8")
+        world.place(time)
         rays = tracer.RayBatch(np.broadcast_to(origin, directions.shape), directions)
         assert world.closest_hits(rays).t.min() > 0.12, f"frame {frame}"
 
 
 @pytest.fixture(scope="module", params=["office", "courtyard"])
 def many_lights(request: pytest.FixtureRequest) -> tracer.Scene:
-    return tracer.load_scene(SCENES / f"{request.param}.aff")
+    return loaded(SCENES / f"{request.param}.aff")
 
 
 def test_the_office_has_256_panels_of_16_samples() -> None:
-    info = tracer.scene_info(tracer.load_scene(SCENES / "office.aff"))
+    info = tracer.scene_info(loaded(SCENES / "office.aff"))
     panels = {"kind": "rectangle", "samples": 16, "falloff": "inverse square", "lights": 256}
     assert info["light_kinds"] == [panels]
     assert info["warnings"] == [] and info["triangles"] < 400_000
 
 
 def test_the_courtyard_has_10_000_coloured_bulbs() -> None:
-    scene = tracer.load_scene(SCENES / "courtyard.aff")
+    scene = loaded(SCENES / "courtyard.aff")
     info = tracer.scene_info(scene)
     assert info["light_kinds"] == [{"kind": "point", "samples": 1, "falloff": "inverse square", "lights": 10_000}]
     assert info["warnings"] == [] and info["triangles"] < 100_000
@@ -176,8 +177,9 @@ def test_figure_3_marks_what_goes_on_behind_something(size: int, symmetric: bool
 
 def test_figure_4_shows_its_shadow_only_after_zooming_in() -> None:
     scene = loaded(SCENES / "figure4.aff")
-    culled = tracer.Renderer(scene, tracer.Settings(width=128, height=128))
-    traced = tracer.Renderer(scene, tracer.Settings(width=128, height=128, method="none"))
+    world = tracer.World(scene)
+    culled = tracer.Renderer(scene, tracer.Settings(width=128, height=128), world=world)
+    traced = tracer.Renderer(scene, tracer.Settings(width=128, height=128, method="none"), world=world)
     modes: list[int] = []
     shadow: list[int] = []
     truth: list[int] = []

@@ -22,6 +22,7 @@ import tracer
 from tests.sweeps import cases
 from tracer.experiments import experiment
 from tracer.experiments.study import read_study
+from tracer.method import additions, bases, unregister
 from tracer.scene.load import load_scene
 from viewer.__main__ import main
 from viewer.cli.sweep import RESULTS
@@ -70,22 +71,22 @@ def test_readme_is_short() -> None:
     assert len(README.read_text().splitlines()) <= LONGEST
 
 
-def test_examples_run(tmp_path: Path) -> None:
-    """Each page is one script, run in the project's folder; what takes arguments is a script of its own.
-
-    One process runs them all, with names of its own for each, as most of its time goes into its start."""
-    pages = [page for page in PAGES if blocks(page, "python")]
-    assert {README, PYTHON} <= set(pages)
-    scripts = []
-    for page in pages:
-        scripts.append(tmp_path / f"{page.stem}.py")
-        scripts[-1].write_text("\n".join(block for block in blocks(page, "python") if "sys.argv" not in block))
-    code = (
-        'import runpy, sys\nfor path in sys.argv[1:]:\n    runpy.run_path(path, run_name="__main__")\n    print(path)\n'
-    )
-    said = run(ROOT, tmp_path / "all.py", code, *scripts)
-    parts = re.split("|".join(rf"^{re.escape(str(path))}\n" for path in scripts), said, flags=re.MULTILINE)
-    assert len(parts) == len(pages) + 1 and all(parts[:-1]), "each prints something"
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")], ids=lambda page: page.name)
+def test_examples_run(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each page is one script, run in the project's folder; what takes arguments is a script of its own."""
+    script = tmp_path / f"{page.stem}.py"
+    script.write_text("\n".join(block for block in blocks(page, "python") if "sys.argv" not in block))
+    monkeypatch.chdir(ROOT)
+    known = {kind.name for kind in (*bases(measures=True), *additions(measures=True))}
+    try:
+        runpy.run_path(str(script), run_name="__main__")
+    finally:
+        for kind in bases(measures=True):
+            if kind.name not in known:
+                unregister(kind.name)
+    assert capsys.readouterr().out
 
 
 def run(folder: Path, script: Path, code: str, *arguments: object) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import tracer.renderer
+from tests import scenes
 from tests.golden.pictures import (
     FOLDER,
     GOLDEN,
@@ -25,7 +26,6 @@ from tests.golden.pictures import (
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.geometry.world import World
-from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from viewer.util.resources import embedded_scenes
 
@@ -36,12 +36,12 @@ STUDY, FIGURE3, BEFORE, FIGURE4 = GOLDEN
 @cache
 def world_of(name: str) -> World:
     """An embedded scene with its trees, which what is changed here leaves as they are."""
-    return World(load_scene(embedded_scenes()[name]))
+    return scenes.world_of(embedded_scenes()[name], BVH8)
 
 
 @cache
 def frame_of(of: OfMethod) -> Frame:
-    return of.frame(world_of(of.scene) if of.accelerator == BVH8 else None)
+    return of.frame(world_of(of.scene))
 
 
 def off(golden: Golden, frame: Frame) -> dict[str, Difference]:

@@ -15,6 +15,10 @@ frame.statistics.shadow.traversal_steps
 
 import sys
 
+from tracer.runtime import prebuilt
+
+prebuilt.use()  # before anything imports numba
+
 from tracer.experiments import experiment, lamp_experiment, zoom
 from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch as RayBatch

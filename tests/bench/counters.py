@@ -58,57 +58,12 @@ class Edit:
     instead: str = ""
 
 
-EDITS = (
-    Edit("tracer/geometry/kdtree/tree.py", "        s.counts[STEPS] += leaf.steps\n", 1),
-    Edit("tracer/geometry/kdtree/tree.py", "            s.counts[TESTS] += 1\n", 1),
-    Edit("tracer/geometry/kdtree/traverse.py", "        s.counts[STEPS] += leaf.steps\n", 1),
+COUNTING = re.compile(r"^ +(?:s\.)?count(?:s|ed)\[(?:STEPS|TESTS)\] \+= .*\n", re.MULTILINE)  # a line that only counts
+EDITS = (  # where the kd-tree counts on its way
     Edit("tracer/geometry/kdtree/tree.py", "    steps = 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "        steps += 1\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "    steps: int\n", 1),
     Edit("tracer/geometry/kdtree/tree.py", "leave, steps, pending)", 1, "leave, pending)"),
-    Edit("tracer/geometry/lazy_tree/traverse.py", "        s.counts[STEPS] += met.steps\n", 3),
-    Edit("tracer/methods/voxels.py", "        counted[STEPS] += ones(live) if voxels.by_ray else 1\n", 1),
-    *(  # the deepest first: they end like the others
-        Edit(f"tracer/geometry/bvh8/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", times)
-        for file, indent, what, by, times in (
-            ("packet_tree", 12, "TESTS", "1", 2),
-            ("packet_tree", 8, "TESTS", "1", 1),
-            ("packet_tree", 8, "STEPS", "1", 1),
-            ("packet_tree", 4, "TESTS", "1", 1),
-            ("single_ray", 12, "TESTS", "1", 2),
-            ("single_ray", 8, "STEPS", "1", 1),
-            ("single_ray", 8, "STEPS", "rays", 1),
-            ("stream", 12, "TESTS", "1", 1),
-            ("stream", 12, "TESTS", "leaves", 1),
-            ("stream", 12, "STEPS", "nodes", 1),
-            ("stream", 12, "STEPS", "rays", 1),
-            ("stream", 8, "STEPS", "rays", 1),
-        )
-    ),
-    *(  # likewise
-        Edit(f"tracer/{file}.py", f"{indent * ' '}counts[{what}] += {by}\n", 1)
-        for file, indent, what, by in (
-            ("neighbours/certified/lookup", 8, "TESTS", "tests"),
-            ("culling/occluder_cache", 8, "TESTS", "ones(tested)"),
-            ("visibility/tree_walk", 12, "STEPS", "1"),
-            ("visibility/tree_walk", 8, "STEPS", "1"),
-            ("visibility/search", 4, "TESTS", "n"),
-            ("neighbours/area_lights/area_light_query", 4, "TESTS", "ones(open_)"),
-            ("neighbours/area_lights/area_light_query", 8, "TESTS", "ones(lanes_below(found, batch))"),
-            ("neighbours/area_lights/recent_occluders", 8, "TESTS", "1"),
-            ("neighbours/lightbuffer/candidates", 12, "TESTS", "ones(there) if single else 1"),
-            ("neighbours/lightbuffer/lookup", 16, "STEPS", "_lookups(n, single)"),
-            ("neighbours/lightbuffer/lookup", 8, "STEPS", "_lookups(n, single)"),
-            ("neighbours/lightbuffer/lookup", 4, "STEPS", "_lookups(n, single)"),
-            ("visibility/box_candidates", 8, "TESTS", "room.state[0]"),
-            ("visibility/ask_list", 8, "TESTS", "ones(left) if by_ray else 1"),
-            ("visibility/ask_list", 8, "TESTS", "ones(here) if by_ray else 1"),
-            ("neighbours/voxels/walk", 8, "STEPS", "ones(open_) if voxels.by_ray else 1"),
-            ("neighbours/environments/ask", 8, "STEPS", "ones(live) if by_ray else 1"),
-            ("visibility/hidden_lights", 16, "STEPS", "1"),
-            ("visibility/hidden_lights", 4, "TESTS", "ones(tried)"),
-        )
-    ),
 )
 
 
@@ -126,8 +81,10 @@ def copy_without_counters(source: Path, target: Path) -> Path:
             raise ValueError(f"the counters cannot be taken out: {edit.file} has {edit.text.strip()!r} {found}")
         path.write_text(text.replace(edit.text, edit.instead))
     for path in sorted((target / "tracer").rglob("*.py")):
-        if found := re.search(r"counts\[(STEPS|TESTS)\]\s*[-+]?=", path.read_text()):
+        text = COUNTING.sub("", path.read_text())
+        if found := re.search(r"counts\[(STEPS|TESTS)\]\s*[-+]?=", text):
             raise ValueError(f"the counters cannot be taken out: {path.relative_to(target)} still has {found[0]}")
+        path.write_text(text)
     return target
 
 

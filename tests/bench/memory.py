@@ -51,8 +51,7 @@ def inspect(path: Path, size: int) -> dict[str, Any]:
     import tracer
     from tracer.compiling.compilation import warm_up
 
-    for lights in (1, 16):
-        warm_up(lights=lights)
+    warm_up()
     gc.collect()
     Path("/proc/self/clear_refs").write_text("5")  # forget the most there was
     before, started = resident("VmRSS"), time.perf_counter()

@@ -58,7 +58,7 @@ def test_a_disk_that_takes_nothing_is_one_line(attack):
             assert not line.failed, f"{line.what}: {line.first}"
 
 
-@pytest.mark.parametrize("option", ["--version", "--help"])
+@pytest.mark.parametrize("option", cases(["--help"], ["--version", "--help"]))
 def test_a_full_disk_is_said_of_help_too(option: str) -> None:
     with open("/dev/full", "w") as full:
         command = [sys.executable, "-m", "viewer", option]

@@ -12,7 +12,7 @@ from tests.sweeps import cases
 
 def test_a_restless_user_meets_nothing_wrong(tmp_path: Path):
     acts = cases(40, 400)
-    user = Soak(list(SCENES[:2]), seed=1, folder=tmp_path)
+    user = Soak(list(cases(SCENES[1:], SCENES[:2])), seed=1, folder=tmp_path)
     for _ in range(acts):
         user.act()
     user.rest()

@@ -16,7 +16,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +24,6 @@ from PIL import Image
 
 from tests.viewer.drawn import picture
 from tracer.frame import Frame, Settings
-from tracer.geometry.accelerators import BVH8, LAZY
 from tracer.geometry.world import World
 from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
@@ -81,12 +79,6 @@ GOLDEN = (
 )
 
 
-@cache
-def _lazy_world(scene: str) -> World:
-    """A world that is built where rays arrive, of which only one picture is made: others would have more built."""
-    return World(load_scene(embedded_scenes()[scene]), accelerator=LAZY)
-
-
 @dataclass(frozen=True)
 class OfMethod:
     """A view of what a method keeps of a scene, or its plain picture, in the first frame; `stray` pixels may differ."""
@@ -97,14 +89,12 @@ class OfMethod:
     view: View
     stray: int
     cut: Slice = MIDDLE
-    accelerator: str = BVH8
+    memory: float = SETTINGS.certificate_memory
 
     def frame(self, world: World | None = None) -> Frame:
         """The frame; `world` as in `Renderer`."""
-        if self.accelerator == LAZY:  # the frame shows its world's tree, which must not go
-            world = _lazy_world(self.scene)
         scene = load_scene(embedded_scenes()[self.scene]) if world is None else world.scene
-        settings = replace(SETTINGS, method=self.method, accelerator=self.accelerator)
+        settings = replace(SETTINGS, method=self.method, certificate_memory=self.memory)
         renderer = Renderer(scene, settings, world=world)
         return renderer.render(scene.frame_time(0))
 
@@ -115,7 +105,7 @@ class OfMethod:
 
 EXACT = "figure3-exact"
 OF_METHODS = (
-    OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2)),
+    OfMethod("default-voxels", "default", "voxels", View.VOXELS, stray=60, cut=Slice(1, 0.2), memory=16.0),
     OfMethod("default-cell-lights", "default", "lie-exact", View.CELL_LIGHTS, stray=60),
     *(OfMethod(EXACT, "figure3", method, View.COLOR, stray=4) for method in ("voxels", "lie-exact", "lightbuffer")),
 )

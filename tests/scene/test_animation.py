@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import tracer
+from tests.scenes import loaded
+from tests.sweeps import cases
+from tests.tracing.random_worlds import quickly
 from tracer.scene.animation import Animation, Chains, Keys, TrackSet
 from tracer.scene.deformation import Deformation, deformed
 from tracer.scene.model import Camera
@@ -120,6 +122,7 @@ track = st.integers(4, 9).flatmap(
 )
 
 
+@quickly(60)
 @given(track, st.floats(-5, 10))
 def test_any_track_agrees_with_its_slow_twin(track, time):
     result = Animation({"a": TrackSet(translation=track)}).translation("a", time)
@@ -127,6 +130,7 @@ def test_any_track_agrees_with_its_slow_twin(track, time):
     assert result == pytest.approx(twin(track, time), rel=1e-9, abs=1e-9)
 
 
+@quickly(30)
 @given(track, track, st.floats(-5, 10))
 def test_tracks_do_not_disturb_one_another(one, two, time):
     both = Animation({"a": TrackSet(translation=one), "b": TrackSet(scale=one), "c": TrackSet(translation=two)})
@@ -136,6 +140,7 @@ def test_tracks_do_not_disturb_one_another(one, two, time):
     assert np.diag(both.matrix(("b",), time))[:3] == pytest.approx(twin(one, time), abs=1e-9)
 
 
+@quickly(40)
 @given(track)
 def test_tracks_pass_through_their_inner_keys(track):
     ordered = Keys(np.sort(track.times) + 0.1 * np.arange(len(track.times)), track.values, track.shape)
@@ -185,6 +190,7 @@ rotation_track = st.integers(4, 8).flatmap(
 )
 
 
+@quickly(40)
 @given(rotation_track, st.floats(-5, 10))
 def test_any_rotation_track_gives_rotations(track, time):
     matrix = Animation({"a": TrackSet(rotation=track)}).matrix(("a",), time)[:3, :3]
@@ -292,7 +298,7 @@ def random_animation(rng: np.random.Generator) -> Animation:
     )
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(cases(5, 20)))
 def test_together_is_as_alone(seed):
     rng = np.random.default_rng(seed)
     animation = random_animation(rng)
@@ -308,7 +314,7 @@ def test_together_is_as_alone(seed):
 
 @pytest.mark.parametrize("name", ["kitchen/kitchen.aff", "robot/Robot.aff"])
 def test_of_a_whole_scene(bart, name):
-    scene = tracer.load_scene(bart / name)
+    scene = loaded(bart / name)
     chains = [item.chain for item in scene.objects]
     together = Chains(scene.animation, chains)
     for time in np.linspace(*scene.time_range, 5):

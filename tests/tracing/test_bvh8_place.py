@@ -59,7 +59,7 @@ def assert_placed(world: tracer.World, time: float, rounding: float = 2e-7) -> N
     assert world.placed.has_dynamic == (not np.isnan(rows).all() or not np.isnan(boxes).all())
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", cases(SCENES[1:], SCENES))
 def test_what_moves_and_deforms_is_where_the_animation_puts_it(bart, name):
     """And the tree is that of a world that never was at any other time."""
     content = loaded(bart / name)
@@ -81,7 +81,7 @@ def test_a_tree_of_what_deforms_stays_good(bart):
     """Between the times for which shapes are made, too: not much worse than one built for the moment."""
     content = loaded(bart / "museum/museum5.aff")
     world = tracer.World(content, accelerator="bvh8")
-    for time in np.linspace(0.02, 3.98, 40):
+    for time in np.linspace(0.02, 3.98, cases(15, 40)):
         world.place(time)
         fresh = build_tree(world.placed.triangles[content.triangle_offsets[1] :].copy(), NO_BOXES)
         assert cost(world.structure.dynamic) - 1 < 1.25 * cost(fresh)  # but for the node above all objects
@@ -102,7 +102,7 @@ def round_things(rng: np.random.Generator, n: int) -> Quadrics:
     return quadrics([(CONE if i % 2 else SPHERE, m, tuple(rng.uniform(-1, 1, 2))) for i, m in enumerate(maps)])
 
 
-@pytest.mark.parametrize("objects", [0, 1, 7, 8, 9, 100])
+@pytest.mark.parametrize("objects", [0, 1, 8, 9, 60])
 def test_objects_of_triangles_and_quadrics_are_placed(objects):
     rng = np.random.default_rng(objects)
     parts = []

@@ -49,7 +49,7 @@ def test_what_is_believed_the_trees_say_too(accelerator: str):
     """Rays that pass a triangle near its edges and corners, on either side, and that begin or end near it."""
     counted = np.zeros(2, np.int64)
 
-    @quickly(150)
+    @quickly(80)
     @given(
         st.integers(0, 2**32 - 1), st.sampled_from([1e-9, 1e-3, 1.0, 1.0, 1e3, 1e9]), st.sampled_from([0.0, 1.0, 40.0])
     )
@@ -76,7 +76,7 @@ def test_what_is_believed_the_trees_say_too(accelerator: str):
         counted[:] += sure.sum(), (blocked & ~sure).sum()
 
     check()
-    assert counted.min() > 3000  # both what is believed and what had to be asked
+    assert counted.min() > 1500  # both what is believed and what had to be asked
 
 
 def test_rays_through_the_inside_of_a_triangle_are_believed():
@@ -122,7 +122,7 @@ def test_frames_of_random_scenes_are_those_without_a_cache(
     def check(walk: Walk, depth: int) -> None:
         nonlocal hits
         settings = tracer.Settings(
-            48, 40, depth, method, threads=2, verify=True, record_lights=True, accelerator=accelerator
+            40, 32, depth, method, threads=2, verify=True, record_lights=True, accelerator=accelerator
         )
         without = tracer.Renderer(walk.scene, settings)
         cached = tracer.Renderer(walk.scene, replace(settings, method=method + "+cache"))
@@ -135,11 +135,11 @@ def test_frames_of_random_scenes_are_those_without_a_cache(
     assert hits > 1000
 
 
-@pytest.mark.parametrize(("method", "accelerator"), crossed(["none", "paper", "cells"], ACCELERATORS))
+@pytest.mark.parametrize(("method", "accelerator"), crossed(["cells", "none"], ACCELERATORS))
 def test_frames_of_kitchen_are_those_without_a_cache(bart: Path, method: str, accelerator: str):
     world = world_of(bart / "kitchen" / "kitchen.aff", accelerator)
     kitchen = world.scene
-    settings = tracer.Settings(96, 96, 10, method, verify=True, record_lights=True, accelerator=accelerator)
+    settings = tracer.Settings(72, 72, 10, method, verify=True, record_lights=True, accelerator=accelerator)
     without = tracer.Renderer(kitchen, settings, world=world)
     cached = tracer.Renderer(kitchen, replace(settings, method=method + "+cache"), world=world)
     for number in range(395, 398):

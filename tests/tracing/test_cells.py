@@ -35,8 +35,8 @@ def weights(draw, count: int) -> np.ndarray:
     return w / w.sum(axis=1, keepdims=True)
 
 
-@quickly(200, shrink=True)
-@given(st.integers(0, cells.MAX_LEVEL), st.integers(1, 40), st.data())
+@quickly(60, shrink=True)
+@given(st.integers(0, cells.MAX_LEVEL), st.integers(1, 24), st.data())
 def test_a_point_lies_within_the_corners_of_its_cell(level: int, points: int, data: st.DataObject):
     """Sixteen at a time and those left over, next to another primitive and to misses."""
     count, w = 4**level, weights(data.draw, points)
@@ -53,7 +53,7 @@ def test_a_point_lies_within_the_corners_of_its_cell(level: int, points: int, da
         assert inside.min() >= -slack and inside.sum() <= 1 + slack
 
 
-@quickly(200, shrink=True)
+@quickly(80, shrink=True)
 @given(st.integers(0, cells.MAX_LEVEL), st.data())
 def test_the_quadtree_leads_to_the_same_cell(level: int, data: st.DataObject):
     """Anywhere but on a border, where rounding decides."""

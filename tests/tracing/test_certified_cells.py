@@ -46,7 +46,7 @@ def _certified(made: tracer.Scene, size: int, frames: Sequence[tuple[float, Came
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_cells_of_nasty_scenes_are_what_dense_sampling_says(accelerator: str):
     tried = np.zeros(4, int)
-    for seed in range(cases(10, 20)):
+    for seed in range(cases(8, 20)):
         walk, rng = nasty_walk(seed), np.random.default_rng(seed)
         frames = [(0.0, camera) for _, camera in walk.frames]
         twin = _certified(static_part(walk.scene), 24, frames, accelerator)
@@ -123,7 +123,7 @@ def _searched(draw: st.DrawFn) -> tuple[tracer.Scene, Camera]:
 def test_no_occluder_near_the_edge_of_a_beam_makes_a_certificate_wrong(accelerator: str):
     seen: Counter[str] = Counter()
 
-    @quickly(30)
+    @quickly(16)
     @given(_searched())
     def search(searched: tuple[tracer.Scene, Camera]) -> None:
         made, camera = searched

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import tracer
-from tests.scenes import loaded
+from tests.scenes import loaded, world_of
 from tests.sweeps import ACCELERATORS, cases, crossed
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, with_lamps
 from tests.tracing.same import contents
@@ -59,7 +59,7 @@ def test_pictures_of_nasty_scenes_are_those_without_culling(method: str, acceler
     """Moving cameras, lights and objects."""
     settings = {"method": method, "width": 24, "height": 24, "depth": 3, "accelerator": accelerator}
     seen: Counter[str] = Counter()
-    assert not [wrong for seed in range(cases(20, 40)) for wrong in _differing(nasty_walk(seed), seen, **settings)]
+    assert not [wrong for seed in range(cases(14, 40)) for wrong in _differing(nasty_walk(seed), seen, **settings)]
     assert min(seen[name] for name in ("culled", "dynamic_only", "candidates_only", "certificates")) > 1000
 
 
@@ -79,7 +79,7 @@ def test_pictures_of_what_rests_flattened_or_stretched_are_those_without_culling
 def test_pictures_by_nasty_lamps_are_those_without_culling(accelerator: str):
     settings = {"method": "certified", "width": 24, "height": 24, "depth": 2, "accelerator": accelerator}
     seen: Counter[str] = Counter()
-    walks = [with_lamps(nasty_walk(seed)) for seed in range(200, cases(216, 240))]
+    walks = [with_lamps(nasty_walk(seed)) for seed in range(200, cases(208, 240))]
     assert not [wrong for walk in walks for wrong in _differing(walk, seen, **settings)]
     assert min(seen[name] for name in ("culled", "dynamic_only", "certificates")) > 1000
 
@@ -87,7 +87,7 @@ def test_pictures_by_nasty_lamps_are_those_without_culling(accelerator: str):
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_pictures_stay_right_while_lights_are_dragged(accelerator: str):
     """In each frame another light is somewhere else, and then back where it was."""
-    for seed in range(100, 110):
+    for seed in range(100, cases(105, 110)):
         walk = nasty_walk(seed, lights=3, frames=8)
         none, certified = _renderers(walk.scene, width=24, height=24, depth=2, accelerator=accelerator)
         other = nasty_walk(seed + 1000, lights=3).scene.lights
@@ -119,20 +119,21 @@ def test_a_picture_of_many_tiles_requests_and_certifies_the_same_with_any_number
     """Several threads look at its tiles at once, which they do not in small pictures."""
 
     def counted(threads: int) -> list[tuple[int, ...]]:
-        settings = tracer.Settings(width=480, height=360, depth=1, method="certified", threads=threads)
-        renderer = tracer.Renderer(loaded(SCENES / "default.aff"), settings)
+        settings = tracer.Settings(width=320, height=240, depth=1, method="certified", threads=threads)
+        world = world_of(SCENES / "default.aff", "bvh8")
+        renderer = tracer.Renderer(world.scene, settings, world=world)
         frames = [renderer.render(0.0).statistics for _ in range(2)]
         return [(one.certificates, one.certificate_steps, one.certificate_tests, one.shadow.rays) for one in frames]
 
     alone = counted(1)
     assert alone[0][0] > 1000
-    assert [counted(4) for _ in range(2)] == [alone] * 2
+    assert counted(4) == alone
 
 
 def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
     """All that a walk leaves behind, frame by frame."""
     settings = tracer.Settings(
-        96, 40, 3, "certified", accelerator=accelerator, threads=threads, verify=True, record_lights=True
+        80, 40, 3, "certified", accelerator=accelerator, threads=threads, verify=True, record_lights=True
     )
     certified, result = tracer.Renderer(walk.scene, settings, cost_model=EAGER), []
     for time, camera in walk.frames:
@@ -152,9 +153,9 @@ def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
 @pytest.mark.parametrize(("lights", "accelerator"), crossed([0, 33], ACCELERATORS))  # 33: more than words have room for
 def test_pictures_counters_and_cells_are_the_same_for_any_number_of_threads(lights: int, accelerator: str):
     for seed in (6, 16) if lights else (1, 5, 9):
-        walk = nasty_walk(seed, lights, frames=4)
-        runs = {threads: _everything(walk, threads, accelerator) for threads in (1, 2, 4)}
-        for threads in (2, 4):
+        walk = nasty_walk(seed, lights, frames=3)
+        runs = {threads: _everything(walk, threads, accelerator) for threads in (1, 3)}
+        for threads in (3,):
             for number, (one, other) in enumerate(zip(runs[1], runs[threads], strict=True)):
                 for name, value in one.items():
                     where = f"{name} of seed {seed}, frame {number}, {threads} threads"
@@ -179,8 +180,8 @@ def _assert_frames_alike(path: Path, frames: list[int], size: int, depth: int) -
 @pytest.mark.parametrize("name", ["kitchen/kitchen.aff", "robot/Robot.aff", "museum/museum5.aff"])
 def test_frames_of_bart_are_those_without_culling(bart: Path, name: str):
     """Neighbours, and cuts from one end of the path to the other."""
-    _assert_frames_alike(bart / name, [0, 1, 2, 150, 151, 152], 96, 10)
+    _assert_frames_alike(bart / name, [0, 1, 150, 151], 72, 10)
 
 
 def test_frames_of_the_default_scene_are_those_without_culling():
-    _assert_frames_alike(SCENES / "default.aff", [0, 1, 2, 10, 11, 12], 96, 10)
+    _assert_frames_alike(SCENES / "default.aff", [0, 1, 10, 11], 72, 10)

@@ -72,7 +72,7 @@ def separated(a: np.ndarray, b: np.ndarray) -> bool:
 def test_a_mode_is_dropped_where_a_ray_meets_the_box_and_kept_where_a_plane_keeps_it_out(round_ones: bool):
     seen = {"met": 0, "separated": 0}
 
-    @quickly(10)
+    @quickly(5)
     @given(st.integers(0, 2**32 - 1), st.sampled_from([0.05, 0.5, 2.0]), st.sampled_from([0.1, 0.5, 1.5]))
     def check(seed: int, size: float, room: float) -> None:
         rng = np.random.default_rng(seed)
@@ -95,7 +95,7 @@ def test_a_mode_is_dropped_where_a_ray_meets_the_box_and_kept_where_a_plane_keep
             seen["separated"] += int(clear.sum())
 
     check()
-    assert min(seen.values()) > 200, seen
+    assert min(seen.values()) > 60, seen
 
 
 @pytest.mark.parametrize("lights", [1, 15, 16, 40])

@@ -49,7 +49,7 @@ def in_parts(made: Scene) -> Scene:
 
 
 @pytest.mark.parametrize("accelerator", ["bvh8", "kdtree"])
-@quickly(6)
+@quickly(4)
 @given(walk=walks(), seed=st.integers(0, 2**32 - 1))
 def test_certified_pictures_of_edited_scenes_are_those_of_none(accelerator: str, walk: Walk, seed: int):
     """Edits follow one another as in the window: renderers take turns, and scenes of some are exchanged."""

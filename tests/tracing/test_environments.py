@@ -99,8 +99,8 @@ def _compare(walk: NastyWalk, method: str, seen: Counter[str], settings: Setting
 def test_pictures_of_nasty_scenes_are_those_without_culling(accelerator: str):
     """Lights that jump, objects that drift, stop and rest, lamps, many lights; with other methods as well."""
     seen = Counter[str]()
-    settings = Settings(width=64, height=48, depth=2, accelerator=accelerator)
-    for seed in range(cases(8, 400)):
+    settings = Settings(width=48, height=36, depth=2, accelerator=accelerator)
+    for seed in range(cases(4, 400)):
         method = ("lie-exact", "lie-exact+rest", "certified+lie-exact", "lie-exact+cache")[seed % 4]
         _compare(nasty_walk(seed, frames=4), method, seen, replace(settings, threads=1 + seed % 2))
     for seed in range(cases(1, 100)):
@@ -126,7 +126,7 @@ def test_counters_do_not_depend_on_threads_and_modes_are_those_beside_none():
 
 def test_with_samples_it_is_wrong_now_and_then_and_verify_counts():
     wrong = right = 0
-    for seed in range(6):
+    for seed in range(4):
         walk = nasty_walk(seed)
         settings = Settings(width=96, height=72, depth=1, method="lie", verify=True, threads=1)
         sampled, none = (
@@ -183,7 +183,7 @@ def test_what_is_shown_of_cells_is_true_and_lights_behind_a_wall_are_passed_over
 def test_embedded_scenes_look_the_same():
     for name, methods in (("figure3", ("voxels", "lie-exact")), ("default", ("certified+lie-exact",))):
         made = load_scene(embedded_scenes()[name])
-        settings = Settings(width=72, height=54, depth=2, method="none", threads=1)
+        settings = Settings(width=48, height=36, depth=2, method="none", threads=1)
         world = World(made)
         none = tracer.Renderer(made, settings, world=world).render()
         for method in methods:

@@ -19,7 +19,7 @@ from tracer.scene.lights import Light
 from tracer.scene.model import Camera, Scene
 from tracer.settings import Settings
 
-SETTINGS = Settings(width=64, height=48, depth=1, method="certified", threads=2)
+SETTINGS = Settings(width=48, height=36, depth=1, method="certified", threads=2)
 
 
 def tiled(samples: int = 20, radius: float = 0.15, lights: int = 40, **extra) -> Scene:
@@ -35,7 +35,8 @@ def tiled(samples: int = 20, radius: float = 0.15, lights: int = 40, **extra) ->
 
 
 def test_rays_that_small_triangles_block_are_not_traced():
-    renderer, truth = (Renderer(tiled(), replace(SETTINGS, method=m)) for m in ("certified", "none"))
+    settings = replace(SETTINGS, width=64, height=48)
+    renderer, truth = (Renderer(tiled(), replace(settings, method=m)) for m in ("certified", "none"))
     frame, none = renderer.render(0.0), truth.render(0.0)
     assert frame.color.tobytes() == none.color.tobytes()
     shadow, rays = frame.statistics.shadow, none.statistics.shadow.rays
@@ -84,7 +85,7 @@ def test_moving_objects_are_asked_and_moving_lamps_followed():
 
 
 def test_pictures_and_counters_repeat_for_any_number_of_threads():
-    one, three = (Renderer(tiled(), replace(SETTINGS, threads=n, width=150)) for n in (1, 3))
+    one, three = (Renderer(tiled(), replace(SETTINGS, threads=n, width=100)) for n in (1, 3))
     for _ in range(2):
         assert_same(one.render(0.0), three.render(0.0), "threads")
 

@@ -69,7 +69,7 @@ def test_what_a_cell_says_is_true_by_brute_force(accelerator: str, longest: int)
     """Nothing lies before a near plane; a far plane lies behind a hit; and between them all hits are candidates."""
     seen = dict.fromkeys(("lit", "blocked", "between", "listed"), 0)
 
-    @quickly(25)
+    @quickly(14)
     @given(st.integers(0, 2**32 - 1), st.sampled_from([1e-3, 1.0, 1e3]), st.sampled_from([0.0, 20.0]))
     def check(seed: int, scale: float, shift: float) -> None:
         rng = np.random.default_rng(seed)
@@ -100,7 +100,7 @@ def test_what_a_cell_says_is_true_by_brute_force(accelerator: str, longest: int)
                 assert set(between.tolist()) <= set(names.tolist())
 
     check()
-    assert min(seen.values()) > 300, seen
+    assert min(seen.values()) > 150, seen
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
@@ -130,7 +130,7 @@ def test_what_a_cube_tells_of_points_is_what_rays_meet(accelerator: str):
 
 def test_what_moves_is_no_nearer_than_depths_say():
     rng = np.random.default_rng(3)
-    for _ in range(20):
+    for _ in range(6):
         low = rng.normal(size=(5, 3)) * 3
         boxes = np.concatenate([low, low + rng.random((5, 3))], 1).astype(F)
         light = rng.normal(size=3).astype(F)

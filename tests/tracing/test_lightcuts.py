@@ -12,6 +12,7 @@ from PIL import Image
 
 import tracer
 from tests.golden.pictures import FOLDER, Difference
+from tests.scenes import loaded
 from tests.sweeps import cases
 from tests.tracing.halls import MATERIALS, hall, lights_of
 from tests.tracing.nasty_worlds import nasty_walk, with_lamps
@@ -24,14 +25,13 @@ from tracer.geometry.world import ACCELERATORS
 from tracer.methods.lightcuts import errors_of
 from tracer.scene.animation import Animation
 from tracer.scene.lights import Light
-from tracer.scene.load import load_scene
 from tracer.scene.model import Camera
 from tracer.shading.lightcuts.block import DARK
 from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
 METHODS = ("lightcuts", "lightcuts-stochastic", "lightcuts-certified")
-SETTINGS = tracer.Settings(width=64, height=48, depth=2, method="lightcuts", threads=2)
+SETTINGS = tracer.Settings(width=48, height=36, depth=2, method="lightcuts", threads=2)
 ALL = {"lightcuts_error": 1e-30, "lightcuts_nodes": 65536}  # every cut is all lights
 
 
@@ -98,8 +98,8 @@ def test_nasty_worlds_are_those_of_none_where_cuts_are_all_lights(seed: int) -> 
 @pytest.mark.parametrize("method", METHODS)
 def test_frames_repeat_for_any_number_of_threads_and_whatever_came_before(method: str) -> None:
     made = hall(lights=lights_of(2, 60, track="swings"))
-    one = tracer.Renderer(made, replace(SETTINGS, width=160, height=96, method=method, threads=1, samples=2))
-    three = tracer.Renderer(made, replace(SETTINGS, width=160, height=96, method=method, threads=3, samples=2))
+    tiles = replace(SETTINGS, width=130, height=70, method=method, samples=2)
+    one, three = (tracer.Renderer(made, replace(tiles, threads=threads)) for threads in (1, 3))
     certified = method == "lightcuts-certified"
     first = one.render(0.4)
     assert_same(first, three.render(0.4), method)
@@ -107,7 +107,7 @@ def test_frames_repeat_for_any_number_of_threads_and_whatever_came_before(method
     again, fresh = three.render(0.4), one.render(0.4) if certified else first
     assert again.color.tobytes() == fresh.color.tobytes()
     moved = three.render(1.6)
-    none = frame_of(made, 1.6, method="none", width=160, height=96)
+    none = frame_of(made, 1.6, method="none", width=130, height=70)
     whole = replace(three.settings, samples=1)
     three.settings = whole
     moved = three.render(1.6)
@@ -223,7 +223,7 @@ def test_memory_is_told_and_forgotten() -> None:
 
 def test_the_office_by_cuts_looks_as_it_did() -> None:
     """Cuts may come out otherwise on another processor: a few levels, where none of the lights would move by one."""
-    made = load_scene(embedded_scenes()["office"])
+    made = loaded(embedded_scenes()["office"])
     frame = tracer.Renderer(made, tracer.Settings(160, 120, 2, "lightcuts")).render(0.0)
     shown, path = picture(frame, View.COLOR), Path(FOLDER) / "lightcuts" / "office.png"
     found = Difference.between(np.asarray(Image.open(path).convert("RGB")), shown)

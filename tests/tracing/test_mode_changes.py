@@ -42,7 +42,7 @@ def by_one(before: np.ndarray, after: np.ndarray) -> ModeChanges:
     return changes
 
 
-@quickly(60)
+@quickly(40)
 @given(st.integers(0, 300), st.sampled_from([np.uint32, np.uint64]), st.integers(0, 2**32 - 1))
 def test_random_words_are_counted_alike_by_any_number_of_threads(count, word, seed):
     rng = np.random.default_rng(seed)
@@ -58,7 +58,7 @@ def test_random_words_are_counted_alike_by_any_number_of_threads(count, word, se
             assert mode_changes(before, after, threads) == expected
 
 
-@quickly(7)
+@quickly(4)
 @given(walks(lights=3), st.sampled_from(["paper", "cells", "paper+rest", "none"]), st.sampled_from([1, 2, 3]))
 def test_frames_say_how_their_modes_changed(walk: Walk, method: str, threads: int):
     renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method=method, modes=True, threads=threads))

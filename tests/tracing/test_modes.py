@@ -8,15 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.tracing import naive
+from tests.tracing import naive, naive_cells
 from tests.tracing.random_worlds import quickly
 from tests.tracing.worlds import random_corners, scene
-from tracer.culling import modes
+from tracer.culling import cells, modes
 from tracer.culling.cells import primitives_are_units
 from tracer.culling.mode_history import ModeHistory
 from tracer.culling.modes import OcclusionMode, ShadowMode
 from tracer.culling.occlusion import occlusion_testing, set_occlusion_modes
 from tracer.geometry.camera import pinhole
+from tracer.geometry.rays import Hits
 from tracer.scene.lights import LampTable, Light
 from tracer.scene.model import Camera
 
@@ -123,31 +124,44 @@ def test_words_over_many_frames_are_what_the_naive_twin_says(lights, dynamic, da
         assert not memory.hidden.any() and not memory.gained.any()
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("in_cells", [False, True])
 @pytest.mark.parametrize("symmetric", [False, True])
-def test_occlusion_testing_asks_what_the_naive_twin_asks(seed, symmetric):
-    rng = np.random.default_rng(seed)
+def test_occlusion_testing_asks_what_the_naive_twin_asks(symmetric, in_cells, monkeypatch):
+    """Of whole triangles, and of their cells."""
+    monkeypatch.setattr(cells, "AIM", 150)
+    rng = np.random.default_rng(2)
     corners = random_corners(rng, 25, 0.3)
-    world = tracer.World(scene(corners))
+    world = tracer.World(scene(corners), accelerator="kdtree")
     camera = pinhole(Camera((0.5, 0.5, 4.0), (0.0, 0.0, -1.0), angle=30.0), 24, 18)
     y, x = np.mgrid[:18, :24].reshape(2, -1)
     directions = camera.corner + x[:, None] * camera.column + y[:, None] * camera.row
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     origins = np.broadcast_to(camera.origin, directions.shape)
-    ids = world.closest_hits(tracer.RayBatch(origins, directions)).primitive.reshape(18, 24)
+    first = cells.first_units(world.placed.triangles, world.object_of) if in_cells else np.arange(len(corners) + 1)
+    rays = tracer.RayBatch(origins, directions)
 
-    alone = [tracer.World(scene(c[None])) for c in corners]
-    met = np.array([w.any_hits(tracer.RayBatch(origins, directions)) for w in alone]).reshape(-1, 18, 24)
-    expected, tests = naive.hidden_units(ids, ids, lambda px, py, p, unit: met[p, py, px], symmetric)
-    units = primitives_are_units(), ids
-    nothing = np.zeros(len(corners), np.uint32)
+    def units_met(hits: Hits, triangle: int | None = None) -> np.ndarray:
+        """(432,) the unit that each ray meets, of a world or of a triangle alone; -1 for none."""
+        found = []
+        for p, u, v in zip(hits.primitive.tolist(), hits.u, hits.v, strict=True):
+            number = p if triangle is None else triangle
+            count = int(first[number + 1] - first[number])
+            found.append(-1 if p < 0 else int(first[number]) + naive_cells.cell_of(count, u, v))
+        return np.array(found)
+
+    hits = world.closest_hits(rays)
+    ids, units = hits.primitive.reshape(18, 24), units_met(hits).reshape(18, 24).astype(np.int32)
+    alone = [tracer.World(scene(c[None]), accelerator="kdtree") for c in corners]
+    met = np.array([units_met(w.closest_hits(rays), p) for p, w in enumerate(alone)]).reshape(-1, 18, 24)
+    expected, tests = naive.hidden_units(ids, units, lambda px, py, p, unit: met[p, py, px] == unit, symmetric)
+    nothing = np.zeros(first[-1], np.uint32)
     for words in (
         nothing,
-        np.where(np.arange(len(corners)) % 4 == 3, np.uint32(OcclusionMode.FULLY_RENDERED), nothing),
+        np.where(np.arange(first[-1]) % 4 == 3, np.uint32(OcclusionMode.FULLY_RENDERED), nothing),
     ):
-        hidden = np.zeros(len(corners), np.bool_)
+        hidden, numbers = np.zeros(first[-1], np.bool_), first.astype(np.int32) if in_cells else primitives_are_units()
         counted = [
-            occlusion_testing(world.placed, camera, ids, *units, symmetric, row, row + 6, words, hidden)
+            occlusion_testing(world.placed, camera, ids, numbers, units, symmetric, row, row + 6, words, hidden)
             for row in (0, 6, 12)
         ]
         assert sum(counted) == tests

@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.sweeps import ACCELERATORS, cases
-from tests.tracing.naive_frame import NaiveRenderer
 from tests.tracing.nasty_worlds import nasty_walk
 from tests.tracing.random_worlds import Walk, quickly, walks
-from tracer.culling.modes import DYNAMIC, FULLY_RENDERED, occlusion_mode
+from tracer.culling.modes import DYNAMIC, occlusion_mode
 from tracer.neighbours.certified.cost_model import CostModel
 from tracer.scene.model import Camera
 
@@ -77,18 +76,18 @@ def test_modes_beside_any_exact_method_are_the_papers(accelerator: str):
     seen: Counter[str] = Counter()
     settings = {"width": 26, "height": 20, "depth": 2, "accelerator": accelerator}
 
-    @quickly(8)
+    @quickly(5)
     @given(walks(), st.booleans())
     def check(walk: Walk, symmetric: bool) -> None:
         assert not _differing(walk.scene, walk.frames, seen, symmetric=symmetric, **settings)
 
     check()
-    for seed in range(cases(5, 8)):
+    for seed in range(cases(4, 8)):
         walk = nasty_walk(seed)
         assert not _differing(walk.scene, walk.frames, seen, **settings), f"seed {seed}"
-    assert min(seen[f"certified: {name}"] for name in ("culled", "candidates_only")) > 1000
-    assert min(seen[name] for name in ("full", "non", "cache hits")) > 500
-    assert seen["otherwise at rest"] > 10
+    assert min(seen[f"certified: {name}"] for name in ("culled", "candidates_only")) > 500
+    assert min(seen[name] for name in ("full", "non", "cache hits")) > 250
+    assert seen["otherwise at rest"] > 5
     assert seen["none: culled"] == 0
 
 
@@ -97,28 +96,6 @@ def test_beyond_31_lights_there_are_no_modes_and_none_are_missed():
     assert not _differing(walk.scene, walk.frames, seen, width=24, height=16, depth=1, accelerator="bvh8")
     frame = tracer.Renderer(walk.scene, tracer.Settings(24, 16, 1, "none", modes=True)).render(0.0)
     assert len(frame.statistics.by_modes) == 31
-
-
-def test_modes_beside_a_method_are_what_the_naive_twin_says():
-    """Of scenes in which nothing moves: the twin knows no rest."""
-    trusted = 0
-
-    @quickly(8)
-    @given(walks(), st.sampled_from(["none", "certified"]))
-    def check(walk: Walk, method: str) -> None:
-        nonlocal trusted
-        still = replace(walk.scene, objects=walk.scene.objects[:1])
-        settings = tracer.Settings(24, 18, 2, method, modes=True, accelerator="kdtree", threads=2)
-        beside = tracer.Renderer(still, settings, cost_model=EAGER)
-        twin = NaiveRenderer(still, replace(settings, method="paper"))
-        for time, camera in walk.frames:
-            frame, expected = beside.render(time, camera), twin.render(time, camera)
-            assert frame.modes.tolist() == expected.words
-            assert frame.highest_count.tolist() == expected.highest_count
-            trusted += int((occlusion_mode(frame.modes) == FULLY_RENDERED).sum())
-
-    check()
-    assert trusted > 100
 
 
 def test_modes_go_on_where_the_method_changes_and_forget_nothing():

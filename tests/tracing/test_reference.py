@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.scenes import loaded
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tracer.culling.modes import occlusion_mode, shadow_mode
 from tracer.reference import Reference, ReferenceFrame
@@ -44,7 +45,8 @@ def assert_same(frame: tracer.Frame, expected: ReferenceFrame, lights: int) -> N
 
 def renderers(scene: tracer.Scene, **settings) -> tuple[tracer.Renderer, Reference]:
     chosen = tracer.Settings(method="paper", accelerator="kdtree", threads=2, **settings)
-    return tracer.Renderer(scene, chosen), Reference(scene, chosen)
+    reference = Reference(scene, chosen)
+    return tracer.Renderer(scene, chosen, world=reference.world), reference
 
 
 @pytest.mark.parametrize("lights, examples", [(0, 4), (1, 8), (3, 12), (17, 6), (33, 4)])
@@ -58,9 +60,12 @@ def test_frames_of_random_scenes_are_those_of_the_reference(lights: int, example
         fast, reference = renderers(
             walk.scene, width=34, height=14, depth=depth, symmetric=symmetric, zoom_factor=zoom_factor
         )
-        for time, camera in walk.frames:
+        none = tracer.Renderer(walk.scene, replace(fast.settings, method="none"), world=reference.world)
+        for number, (time, camera) in enumerate(walk.frames):
             expected = reference.render(time, camera)
             assert_same(fast.render(time, camera), expected, lights)
+            if number == 0:  # nothing is culled yet
+                assert np.array_equal(none.render(time, camera).color, expected.color)
             seen.update(expected.counts)
 
     check()
@@ -83,20 +88,19 @@ def along(scene: tracer.Scene, frames: int, **settings) -> Counter[str]:
 
 @pytest.mark.parametrize("name", ["kitchen/kitchen", "robot/Robot", "museum/museum5"])
 def test_films_of_bart_are_those_of_the_reference(bart: Path, name: str) -> None:
-    total = along(tracer.load_scene(bart / f"{name}.aff"), 6, depth=10)
+    total = along(loaded(bart / f"{name}.aff"), 6, depth=10)
     assert total["culled"] > 0
 
 
 def test_a_film_of_the_default_scene_is_that_of_the_reference() -> None:
     """With textures, glass, mirrors and moving objects."""
-    scene = tracer.load_scene(SCENES / "default.aff")
-    total = along(scene, 20, depth=10, symmetric=True)
+    total = along(loaded(SCENES / "default.aff"), 10, depth=10, symmetric=True)
     assert total["culled"] and total["dynamic_only"]
 
 
 @pytest.mark.parametrize("other", [{"kind": "sphere", "radius": 0.1, "samples": 4}, {"falloff": "inverse square"}])
 def test_only_points_have_a_reference(other: dict) -> None:
-    scene = tracer.load_scene(SCENES / "figure3.aff")
+    scene = loaded(SCENES / "figure3.aff")
     lights = (replace(scene.lights[0], name="lamp 7", **other),)
     with pytest.raises(ValueError, match="lamp 7"):
         Reference(replace(scene, lights=lights), tracer.Settings(8, 8))

@@ -32,11 +32,10 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
 
 
 WALKS = (
-    ("kitchen/kitchen.aff", 395, cases(3, 10), cases(128, 320), "paper", False),
-    ("robot/Robot.aff", 0, 3, 96, "paper", True),
-    ("robot/Robot.aff", 0, 3, 96, "cells", True),
-    ("robot/Robot.aff", 0, 3, 96, "paper+cache", False),
-    ("museum/museum5.aff", 0, 3, 96, "paper", True),
+    ("kitchen/kitchen.aff", 395, cases(3, 10), cases(96, 320), "paper", False),
+    ("robot/Robot.aff", 0, 3, 80, "cells", True),
+    ("museum/museum5.aff", 0, 3, 80, "paper+cache", True),
+    *cases((), (("robot/Robot.aff", 0, 3, 96, "paper", True), ("robot/Robot.aff", 0, 3, 96, "paper+cache", False))),
 )
 
 

@@ -212,7 +212,8 @@ def test_pictures_are_those_without_culling_in_random_scenes():
     assert rested > 20
 
 
-def test_kitchens_car_starts_and_stops_and_no_picture_differs(bart: Path, accelerator):
+@pytest.mark.parametrize("accelerator", cases(["bvh8"], ACCELERATORS))
+def test_kitchens_car_starts_and_stops_and_no_picture_differs(bart: Path, accelerator: str):
     """Where its poses say so, and, in view of the camera, where time stands still."""
     world = world_of(bart / "kitchen/kitchen.aff", accelerator)
     content = world.scene

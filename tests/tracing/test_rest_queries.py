@@ -62,7 +62,7 @@ def assert_same_but_for_what_is_static(
 def test_queries_answer_the_same_whatever_rests(accelerator):
     seen: Counter[str] = Counter()
 
-    @quickly(40)
+    @quickly(20)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         rng = np.random.default_rng(seed)
@@ -77,10 +77,10 @@ def test_queries_answer_the_same_whatever_rests(accelerator):
         assert world.placed.has_dynamic == still.placed.has_dynamic
 
     check()
-    assert len(seen) == 3 and min(seen.values()) > 500, seen
+    assert len(seen) == 3 and min(seen.values()) > 200, seen
 
 
-@pytest.mark.parametrize("objects", [1, 2, 3, 9, 40])
+@pytest.mark.parametrize("objects", [1, 3, 40])
 def test_many_objects_rest_and_many_move(accelerator, objects):
     rng = np.random.default_rng(objects)
     parts = []

@@ -8,22 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import cases
 from tests.tracing import brute
 from tests.tracing.naive_tree import Line, Traversal
 from tests.tracing.random_worlds import END, quickly, scenes
+from tests.tracing.rays_and_movers import random_rays
 from tests.tracing.worlds import quad, random_corners, scene
 from tracer.geometry.queries import batch_of
 from tracer.geometry.rays import Hits, Rays
-
-
-def random_rays(rng: np.random.Generator, n: int) -> Rays:
-    """Rays through the unit cube, some parallel to its sides, some from within, some that end."""
-    origins, targets = rng.normal(size=(n, 3)) + 0.5, rng.random((n, 3))
-    directions = targets - origins
-    directions[: n // 8, rng.integers(3)] = 0.0
-    origins[n // 8 : n // 4] = rng.random((n // 4 - n // 8, 3))
-    t_max = np.where(rng.random(n) < 0.5, np.inf, rng.uniform(0.2, 1.5, n))
-    return tracer.RayBatch(origins, directions, 1e-5, t_max)
 
 
 def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: bool = False) -> np.ndarray:
@@ -55,7 +47,7 @@ def assert_same_way(world: tracer.World, rays: Rays, there: np.ndarray, edges: b
     return sums
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(cases(2, 4)))
 @pytest.mark.parametrize("n, size", [(20, 0.3), (400, 0.05)])
 def test_rays_go_the_naive_twins_way_through_triangles(seed: int, n: int, size: float):
     rng = np.random.default_rng(seed)
@@ -65,7 +57,7 @@ def test_rays_go_the_naive_twins_way_through_triangles(seed: int, n: int, size: 
     assert tests > any_tests > 0
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(cases(3, 6)))
 def test_rays_through_edges_and_corners_go_the_naive_twins_way(seed: int):
     """Squares on a lattice, and rays along its lines and diagonals: they enter and leave nodes at one and the same t,
     and lie in planes that split, and many squares are equally near.  No number here is rounded."""
@@ -86,7 +78,7 @@ def test_rays_through_edges_and_corners_go_the_naive_twins_way(seed: int):
 def test_rays_go_the_naive_twins_way_through_random_scenes():
     sums = np.zeros((2, 2), np.int64)
 
-    @quickly(60)
+    @quickly(25)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         nonlocal sums

@@ -61,7 +61,7 @@ def _along_a_z_curve(points: np.ndarray, count: int) -> np.ndarray:
     return sum(((cells[axis] >> bit) & 1) << (3 * bit + axis) for axis in range(3) for bit in range(4))
 
 
-@pytest.mark.parametrize("n", [FEWEST + 1, 500, 1600])
+@pytest.mark.parametrize("n", [FEWEST + 1, 1600])
 def test_points_are_sorted_by_position_whatever_lies_past_them(n: int):
     orders = []
     for rest in (0.0, np.nan, 3e38):
@@ -83,8 +83,7 @@ def test_a_small_wave_is_left_as_it_is():
     assert np.array_equal(same, before)
 
 
-@pytest.mark.parametrize("rest", [-1.0, np.nan, 3e38])
-@pytest.mark.parametrize("n", [1, 15, 16, 17, 700])
+@pytest.mark.parametrize(("n", "rest"), [(1, np.nan), (15, 3e38), (16, -1.0), (17, np.nan), (700, 3e38)])
 def test_rays_are_sorted_by_direction_and_origin_whatever_lies_past_them(n: int, rest: float):
     memory = _wave(np.random.default_rng(5), n, rest)
     target = np.full_like(memory, np.nan)

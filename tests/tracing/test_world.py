@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.sweeps import ACCELERATORS
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing import brute, naive
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
@@ -51,26 +51,12 @@ def assert_same_answers(world, corners, origins, directions):
     assert compared > len(origins) // 2
 
 
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("n, size", [(1, 0.5), (40, 0.3), (300, 0.05)])
+@pytest.mark.parametrize("seed", range(cases(2, 6)))
+@pytest.mark.parametrize("n, size", [(40, 0.3), (300, 0.05)])
 def test_queries_agree_with_brute_force(accelerator, seed, n, size):
     rng = np.random.default_rng(seed)
     corners = random_corners(rng, n, size)
     assert_same_answers(tracer.World(scene(corners), 0.0, accelerator), corners, *random_rays(rng, 60))
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_dynamic_objects_are_found_where_they_are_placed(accelerator, seed):
-    rng = np.random.default_rng(100 + seed)
-    static, parts = random_corners(rng, 50, 0.1), [random_corners(rng, 30, 0.1) for _ in range(5)]
-    matrices = [np.eye(4) for _ in parts]
-    for m in matrices:
-        m[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0] * rng.uniform(0.3, 2.0)
-        m[:3, 3] = rng.normal(size=3) * 0.5
-    objects = tuple(moved(f"part {i}", p, m) for i, (p, m) in enumerate(zip(parts, matrices, strict=True)))
-    everything = [static] + [p @ m[:3, :3].T + m[:3, 3] for p, m in zip(parts, matrices, strict=True)]
-    world = tracer.World(scene(static, dynamic=objects), 0.0, accelerator)
-    assert_same_answers(world, np.concatenate(everything), *random_rays(rng, 80))
 
 
 def test_queries_agree_with_float64_in_random_scenes(accelerator):

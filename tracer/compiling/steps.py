@@ -177,7 +177,7 @@ def _seeing_nothing(renderer: Renderer) -> FrameInProgress:
 def _certify_regions(accelerator: str) -> None:
     """What is certified of more lights than words have room for."""
     settings = Settings(width=4, height=4, method="certified", threads=1, accelerator=accelerator)
-    frame = _seeing_nothing(Renderer(_tiny_scene(MAX_CULLED_LIGHTS + 1), settings))
+    frame = _seeing_nothing(Renderer(tiny_scene(MAX_CULLED_LIGHTS + 1), settings))
     frame.prepare_culling()
     certified = frame.methods[0]
     assert isinstance(certified, CertifiedLights) and certified.store is not None
@@ -193,7 +193,7 @@ def render_tiny(method: str, lights: int, accelerator: str) -> None:
     as some methods have nothing to do with fewer."""
     many = 15 if lights <= 15 else MAX_CULLED_LIGHTS if lights <= MAX_CULLED_LIGHTS else MAX_CULLED_LIGHTS + 1
     settings = Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator)
-    renderer = Renderer(_tiny_scene(many), settings)
+    renderer = Renderer(tiny_scene(many), settings)
     for time in (0.0, 1.0):  # what a first frame teaches is asked in the second
         renderer.render(time)
 
@@ -206,11 +206,11 @@ def kinds_of(*names: str) -> frozenset[Kind]:
 
 def _renderer(lights: int, accelerator: str, method: str = DEFAULT_METHOD) -> Renderer:
     # As many lights as make a word of that size, no more: each is traced.
-    scene = _tiny_scene(1 if lights <= 15 else 16)
+    scene = tiny_scene(1 if lights <= 15 else 16)
     return Renderer(scene, Settings(width=4, height=4, method=method, threads=1, accelerator=accelerator))
 
 
-def _tiny_scene(lights: int) -> Scene:
+def tiny_scene(lights: int) -> Scene:
     """A triangle and a sphere that never move, and a triangle that could."""
     corners = np.array([[[-1, -1, 0], [1, -1, 0], [0, 1, 0]]], np.float32)
     normals = np.broadcast_to(np.array([0, 0, 1], np.float32), corners.shape)

@@ -27,8 +27,9 @@ from pathlib import Path
 from typing import Any
 
 import numba
-import platformdirs
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, NullCache, UserProvidedCacheLocator
+
+from tracer.runtime.prebuilt import wanted_root
 
 _PACKAGE = Path(__file__).parents[1]  # the tracer
 _ROOT = _PACKAGE.parent  # of the packages
@@ -113,15 +114,6 @@ def _hash(path: Path) -> str:
 _folders: dict[Path, Path] = {}  # of the sources that this process has asked for
 
 
-def _wanted_root() -> Path:
-    base = os.environ.get("SHADOWCULL_CACHE_DIR")
-    if base:
-        return Path(base).expanduser()
-    if (_ROOT / "pyproject.toml").exists():
-        return _ROOT / ".cache" / "kernels"
-    return Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
-
-
 def folder_of(source: Path) -> Path:
     """The folder of the kernels in a source file: it is there, and has kernels in it or room for them."""
     if source not in _folders:
@@ -130,7 +122,7 @@ def folder_of(source: Path) -> Path:
 
 
 def _make_folder(name: str) -> Path:
-    root = _wanted_root()
+    root = wanted_root()
     folder = root / name
     try:
         if not folder.is_dir():
@@ -172,7 +164,7 @@ def cache_root() -> Path:
 
 def outlives_process() -> bool:
     """Whether compiled kernels outlive this process: else no folder could be written to."""
-    return cache_root() == _wanted_root()
+    return cache_root() == wanted_root()
 
 
 def anything_kept() -> bool:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tracer.compiling.compilation import can_draw, compiled_before, make_ready, ready_for, warm_up
+from tracer.method import title_of
 from tracer.renderer import Renderer, Settings
 from tracer.scene.files import Stamp, noting
 from tracer.scene.load import load_visible_scene, scene_info
@@ -111,7 +112,8 @@ class SceneLoader:
             return
         what = settings.method, len(scene.lights), settings.accelerator
         if not ready_for(*what):
-            self.method_job = Job(f"compiling the kernels of {what[0]}", partial(make_ready, *what), self._wake)
+            title = f"compiling the kernels of {title_of(settings.method)}"
+            self.method_job = Job(title, partial(make_ready, *what), self._wake)
 
     def _report(self, job: Job[Any], before: str = "", after: str = "") -> None:
         """Say why a job has failed, if it has."""
