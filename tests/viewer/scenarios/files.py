@@ -153,7 +153,7 @@ def browsing(d: Driver) -> None:
     assert not state.problem
     d.press("Enter")
     assert d.ui.dialogs and state.folder == box / "inner" and state.typed == ""
-    d.type("deep.aff").click(f"//{OPEN}/Open")
+    d.type("deep.aff").click(f"//{OPEN}/**/deep.aff")
     assert not d.ui.dialogs
     d.settle()
     assert d.c.session.scene.path.name == "deep.aff"

@@ -132,17 +132,22 @@ class CubeMaker:
         found: list[Cube | None] = [None] * len(lights)
         todo = list(range(len(lights)))
         while todo and side >= LEAST_SIDE:
-            for k, cube in zip(todo, self._make(lights[todo], side, threads, cancel), strict=True):
-                found[k] = cube if cube.bytes <= most else None
+            for k, cube in zip(todo, self._make(lights[todo], side, most, threads, cancel), strict=True):
+                found[k] = cube if cube is not None and cube.bytes <= most else None
             todo, side = [k for k in todo if found[k] is None], side // 2
         return found
 
-    def _make(self, lights: NDArray[np.float32], side: int, threads: int, cancel: Cancel) -> list[Cube]:
+    def _make(
+        self, lights: NDArray[np.float32], side: int, most: float, threads: int, cancel: Cancel
+    ) -> list[Cube | None]:
+        """Cubes for lights (k, 3), None for one of which some faces take more than `most` bytes already: the others are
+        not made, nor is its work counted, which would depend on the turns of threads."""
         rows, sure = self._items.rows, self._items.sure
         n, reaches = len(rows), [self._reach(light) for light in lights]
         radii = np.empty((len(lights), -(-n // LANES) * LANES), np.float32)
         cells = np.zeros((len(lights), FACES, side, side), np.int32)
         faces: list[list[_Face | None]] = [[None] * FACES for _ in lights]
+        taken = [cells[0].nbytes] * len(lights)  # bytes
         scratch: list[_Scratch | None] = [None] * threads
         states = np.zeros((len(lights), FACES, CAME_TO), np.int64)
 
@@ -152,6 +157,8 @@ class CubeMaker:
 
         def divide(chunk: int, worker: int) -> None:
             k, face = divmod(chunk, FACES)
+            if taken[k] > most:
+                return
             if scratch[worker] is None:
                 scratch[worker] = _Scratch(n, side, self._longest)
             room, state = scratch[worker], states[k, face]
@@ -163,20 +170,24 @@ class CubeMaker:
                 room.items, room.spans, count, face, side, self._longest, cells[k, face], room.records, room.lists,
                 room.arena, room.found, room.alone, state,
             )  # fmt: skip
-            faces[k][face] = _Face(room.records[: state[RECORDS_USED]].copy(), room.lists[: state[LISTED]].copy())
+            made = _Face(room.records[: state[RECORDS_USED]].copy(), room.lists[: state[LISTED]].copy())
+            faces[k][face] = made
+            taken[k] += made.records.nbytes + made.lists.nbytes
 
         if n:
             for_each_chunk(find_radii, len(lights), threads, cancel)
             for_each_chunk(divide, FACES * len(lights), threads, cancel)
-        self.steps += int(states[:, :, LOOKED_AT].sum())
-        self.tests += int(states[:, :, LOOKED_FOR].sum())
+        kept = [k for k in range(len(lights)) if taken[k] <= most]
+        self.steps += int(states[kept, :, LOOKED_AT].sum())
+        self.tests += int(states[kept, :, LOOKED_FOR].sum())
         made: list[Cube | None] = [None] * len(lights)
 
-        def join(k: int, worker: int) -> None:
+        def join(chunk: int, worker: int) -> None:
+            k = kept[chunk]
             made[k] = self._joined(lights[k], reaches[k], cells[k], faces[k])
 
-        for_each_chunk(join, len(lights), threads, cancel)
-        return [cube for cube in made if cube is not None]
+        for_each_chunk(join, len(kept), threads, cancel)
+        return made
 
     def _joined(
         self, light: NDArray[np.float32], reach: float, cells: NDArray[np.int32], faces: list[_Face | None]

@@ -18,14 +18,14 @@ from imgui_bundle import portable_file_dialogs as native
 from viewer.services.scene_files import CAPTURE_SUFFIXES, SCENE_SUFFIXES, refusal
 from viewer.window.panels import command_palette, keys, named_states, saving
 from viewer.window.ui import Dialog, Ui
-from viewer.window.widgets import ERROR, QUIET, begin_modal, centred, clipped, em, paragraph
+from viewer.window.widgets import ERROR, QUIET, begin_modal, centred, clipped, em, paragraph, seen_rows
 
 OPEN = Dialog.OPEN_FILE.value
 _PROGRAMS = ("zenity", "kdialog", "matedialog", "qarma")  # which portable_file_dialogs asks, outside macOS and Windows
 _SUFFIXES = (*SCENE_SUFFIXES, *CAPTURE_SUFFIXES)
 _FILTERS = ["Scenes and saved pictures", " ".join(f"*{suffix}" for suffix in _SUFFIXES)]
 _LINE = int(imgui.InputTextFlags_.enter_returns_true) | int(imgui.InputTextFlags_.callback_completion)
-_MOST = 100  # names that are listed
+_LIST = 14.0  # ems of height of the list of names
 
 
 def show(ui: Ui) -> None:
@@ -140,8 +140,9 @@ def _ask(ui: Ui, state: OpenFileState) -> None:
         return
     clipped(str(state.folder), QUIET)
     entered = _line(state)
-    more = f"  and {len(state.found) - _MOST} more" if len(state.found) > _MOST else ""
-    paragraph(state.problem or "  ".join(state.found[:_MOST]) + more, ERROR if state.problem else QUIET)
+    if state.problem:
+        paragraph(state.problem, ERROR)
+    entered = _names(state) or entered
     entered = imgui.button("Open", ImVec2(em(6.0), 0.0)) or entered
     imgui.same_line()
     cancelled = imgui.button("Cancel", ImVec2(em(6.0), 0.0)) or cancelled
@@ -166,6 +167,18 @@ def _ask(ui: Ui, state: OpenFileState) -> None:
     imgui.end_popup()
     if opened:
         _open(ui, path)
+
+
+def _names(state: OpenFileState) -> bool:
+    """List what can be opened; returns whether one was clicked, which is the path then."""
+    clicked = ""
+    if imgui.begin_child("names", ImVec2(0.0, em(_LIST))):
+        for number in seen_rows(len(state.found)):
+            if imgui.selectable(state.found[number], False, int(imgui.SelectableFlags_.no_auto_close_popups))[0]:
+                clicked = state.found[number]
+    imgui.end_child()
+    state.typed = clicked or state.typed
+    return bool(clicked)
 
 
 def _line(state: OpenFileState) -> bool:

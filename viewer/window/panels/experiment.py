@@ -20,7 +20,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, QUIET, dropdown, in_window_style, outlined, paragraph, properties, row, tooltip
 
 _USUAL = (REFERENCE, BY_MODES, CERTIFIED, "lightbuffer", "voxels")
-_PLOT, _TABLE = 16.0, 30.0  # ems of width; the table's first columns are what methods are compared by
+_PLOT, _TABLE = 16.0, 44.0  # ems of width; the table's first columns are what methods are compared by
 _FEWEST_FRAMES, _LEAST_TOP = 10, 2.0  # frames and percents that the plot's axes span at least
 
 

@@ -139,9 +139,7 @@ def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene, wrong: int) 
         if imgui.small_button("List its rays"):
             rays.show_rays(ui)
     elif wrong and frame.settings.samples > 1 and not any(one.wrong for one in found.reasons):
-        paragraph("Below is the first sample: it is right. At 1 sample a pixel each wrong pixel is explained.", ERROR)
-        if imgui.small_button("Trace 1 sample a pixel"):
-            ui.controller.settings.change(samples=1)
+        paragraph("Below is the first sample, which is right. The wrong ones are beside it: come nearer.", ERROR)
     told = False  # what hides the primitive
     chosen = _first_light(ui, found)
     if chosen is not None:

@@ -10,7 +10,7 @@ from viewer.window import menus
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, paragraph, wide_button
 
-_ICONS = (icons.ICON_FA_FOLDER_OPEN, icons.ICON_FA_TABLE, icons.ICON_FA_MAGNIFYING_GLASS_PLUS, icons.ICON_FA_BOOK)
+_ICONS = icons.ICON_FA_TABLE, icons.ICON_FA_MAGNIFYING_GLASS_PLUS  # of the commands
 
 
 def show(ui: Ui) -> None:
@@ -20,11 +20,7 @@ def show(ui: Ui) -> None:
         return
     last = step is STEPS[-1]
     paragraph(step.title if last else f"{STEPS.index(step) + 1} of {len(STEPS) - 1}: {step.title}")
-    if last:
-        for number, name in enumerate(step.commands):
-            menus.button(ui, name, _ICONS[number], columns=2)
-            if number % 2 == 0:
-                imgui.same_line()
+    if last:  # no command is where the button was that led here: it may be clicked once more
         if wide_button("Close"):
             tour.end()
             return
@@ -42,3 +38,7 @@ def show(ui: Ui) -> None:
             tour.skip()
     text = tour.text(step) if ui.controller.frame is not None else "You can begin as soon as there is a picture."
     paragraph(text, QUIET)
+    for number, name in enumerate(step.commands):
+        if number:
+            imgui.same_line()
+        menus.button(ui, name, _ICONS[number], columns=len(step.commands))

@@ -19,7 +19,7 @@ from viewer.window.style import GREY, MARK
 from viewer.window.ui import Ui
 from viewer.window.widgets import ERROR, WARNING, clipped, count, em, paragraph, properties, row, tooltip
 
-_PLOT, _FILMS, _TABLE = 16.0, 9.0, 21.0  # ems of width
+_PLOT, _FILMS, _TABLE = 16.0, 24.0, 21.0  # ems of width
 _LEAST_FILM, _MOST_FILM = 3.2, 9.0  # ems of height
 _CHANGES = "modes change"
 _LARGE = 20.0  # ems of a picture that is pointed at
