@@ -247,7 +247,7 @@ class Driver:
         for window in imgui.get_current_context().windows:
             if window.was_active and window.name.startswith((panel, f"{panel}/")):
                 imgui.internal.set_scroll_y(window, window.scroll_max.y)
-        return self.frames(3)
+        return self.frames(2)
 
     # Hands: some of the window's frames follow on each
 
@@ -255,7 +255,7 @@ class Driver:
         """Press keys by their names, one after another: "Ctrl+O"."""
         for key in keys:
             self.context.key_press(chord(key))
-            self.frames(3)
+            self.frames(2)
         return self
 
     @contextmanager
@@ -263,10 +263,10 @@ class Driver:
         """Hold a key, or Ctrl alone, meanwhile."""
         number = imgui.Key.mod_ctrl if key == "Ctrl" else chord(key)
         self.context.key_down(number)
-        self.frames(3)
+        self.frames(2)
         yield
         self.context.key_up(number)
-        self.frames(3)
+        self.frames(2)
 
     def hold(self, key: str, seconds: float) -> Self:
         with self.held(key):
@@ -275,11 +275,11 @@ class Driver:
 
     def type(self, text: str) -> Self:
         self.context.key_chars(text)
-        return self.frames(3)
+        return self.frames(2)
 
     def click(self, item: str) -> Self:
         self.context.item_click(item)
-        return self.frames(3)
+        return self.frames(2)
 
     def start(self, panel: str) -> Self:
         """Begin a panel's run."""
@@ -288,16 +288,16 @@ class Driver:
     def choose(self, entry: str) -> Self:
         """Choose an entry of a menu: "View/Depth"."""
         self.context.menu_click(f"//##MainMenuBar/{entry}")
-        return self.frames(3)
+        return self.frames(2)
 
     def enter(self, item: str, value: float | str) -> Self:
         """Give a field another value."""
         self.context.item_input_value(item, value)
-        return self.frames(3)
+        return self.frames(2)
 
     def hover(self, item: str) -> Self:
         self.context.mouse_move(item)
-        return self.frames(3)
+        return self.frames(2)
 
     def show_panel(self, name: str) -> Self:
         self.ui.show_panel(name)
@@ -328,16 +328,16 @@ class Driver:
     def click_here(self, button: int = 0) -> Self:
         """Click where the pointer is."""
         self.context.mouse_click(button)
-        return self.frames(3)
+        return self.frames(2)
 
     def drag(self, start: tuple[float, float], by: tuple[float, float], button: int = 0) -> Self:
         self.move_to(*start)
         self.context.mouse_down(button)
         self.move_to(start[0] + by[0], start[1] + by[1])
         self.context.mouse_up(button)
-        return self.frames(3)
+        return self.frames(2)
 
     def drop(self, *paths: Path) -> Self:
         """What GLFW calls when files are let go over the window."""
         self.app._dropped(None, [str(p) for p in paths])
-        return self.frames(3)
+        return self.frames(2)

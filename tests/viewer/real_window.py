@@ -25,12 +25,16 @@ from PIL import Image
 from tests.viewer.driver import PATIENCE, Driver
 from tests.viewer.scenarios import SCENARIOS
 from tests.viewer.scenarios.starting import first_start
-from viewer.services import refinement
+from viewer.services import beside, refinement
+from viewer.state.savings import LEAST
 from viewer.window import gl_window
 from viewer.window.app import App
 
 # There what culling saves is told above the picture, for which methods are timed after each picture.
 MEASURING = ("fitting", "panels", "savings")
+# There pictures have the size of the room that the window has for them; elsewhere they are small.
+FILLING = ("capturing", "experimenting", "figures", "fitting", "flying", "hiding", "resizing", "touring")
+SIZE = (320, 200)
 DOZING = ("explaining",)  # there the window rests when nothing moves: what threads find out must wake it
 
 
@@ -41,7 +45,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
     if name != "touring":
         app.ui.tour.end()  # it comes by itself on the first start
     app.controller.preferences.screenshot_folder = str(Path(folder) / "pictures")
-    app.controller.session.set_pace(progressive=True)
+    app.controller.session.set_pace(progressive=True, fixed_size=name not in FILLING, width=SIZE[0], height=SIZE[1])
     app.controller.preferences.savings = name in MEASURING
     app.controller.settings.change(samples=1)  # else idle pictures go on changing
     failed: list[BaseException] = []
@@ -82,6 +86,7 @@ def run(name: str, size: list[int], scene: str, folder: str) -> int:
 def main() -> None:
     gc.freeze()  # what is imported lives to the end
     refinement.MOST_FRAMES = 4  # at idle with certificates: more of them show nothing that these do not
+    beside.MOST_ROUNDS = LEAST  # as soon as anything is told, the comparison ends
     with os.fdopen(os.dup(1), "w") as answers:
         os.dup2(2, 1)  # what ImGui prints is no answer
         for line in sys.stdin:

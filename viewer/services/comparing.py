@@ -93,8 +93,8 @@ class Comparing:
         if self.state.on and self._session.draw.view is View.WIPE:  # one line is enough
             self.end()
             self._notices.say("the comparison with A has ended: this wipe compares with the right picture")
-        a, b, mode = self.a, self.b, self.state.mode
-        if a is None or b is None or not self.state.on:
+        a, b, mode = self.a if self.state.on else None, self.b, self.state.mode
+        if a is None or b is None:
             self.seen = self._difference = None
             return
         shows_a = self.held and mode is not CompareMode.SIDE
@@ -141,8 +141,8 @@ class Comparing:
     def span(self, view: View) -> tuple[float, float] | None:
         """Return the range that maps of numbers have: chosen, or one for both pictures, so that a colour means the same
         in A and in B; None for what each frame has."""
-        chosen, a, b = replace(self._session.draw, view=view).span, self.a, self.b
-        if chosen or not self.state.on or not view.has_range or a is None or b is None or {a.view, b.view} != {view}:
+        chosen, a = replace(self._session.draw, view=view).span, self.a if self.state.on else None
+        if chosen or a is None or not view.has_range or (b := self.b) is None or {a.view, b.view} != {view}:
             return chosen
         lows, highs = zip(view.declared.span(a.frame), view.declared.span(b.frame), strict=True)
         return min(lows), max(highs)

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -236,9 +237,9 @@ class DrawOptions:
             slice=self.slice if view.has_slice else MIDDLE,
         )
 
+    @lru_cache(16)  # noqa: B019 - the same few values, several times in each frame of the window
     def of_pixels(self) -> DrawOptions:
-        """Return these with the defaults of all that does not count for the pixels of the view: another value whenever
-        these must be drawn anew."""
+        """Return these with the defaults of all that does not count for the view's pixels: else they are drawn anew."""
         used, state = self.as_needed(), SimpleNamespace(draw=self)
         unused = [one for one in settings_of(DrawOptions) if one.name in AROUND or not one.applies(state)]
         return replace(used, **{one.name: one.default for one in unused if not one.within})

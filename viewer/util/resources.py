@@ -26,10 +26,10 @@ def shader_source(name: str) -> str:
     return (_root() / "shaders" / name).read_text(encoding="utf-8")
 
 
+@cache
 def embedded_scenes() -> dict[str, Path]:
-    """Return name and path of every scene that comes with the program, the default one first.
-
-    A scene made of several files includes its parts from folders of their own, so that each file here is a scene."""
+    """Return name and path of every scene that comes with the program, the default one first; parts of scenes lie in
+    folders of their own."""
     found = {path.stem: path for path in (_root() / "assets" / "scenes").glob("*.aff")}
     return dict(sorted(found.items(), key=lambda one: (one[0] != DEFAULT_SCENE, one[0])))
 
@@ -40,9 +40,8 @@ def default_scene() -> Path:
 
 
 def scene_path(name: str | None) -> Path:
-    """Return the file that a name means: a path, the name of a scene of the program, or by default its room.
-
-    Raises OSError, in one line, for what is neither, but like the name of such a scene."""
+    """Return the file that a name means: a path, the name of a scene of the program, or by default its room; raises
+    OSError, in one line, for what is neither, but like the name of such a scene."""
     own, path = embedded_scenes(), Path(name or DEFAULT_SCENE)
     if name is None or name in own:
         return own[name or DEFAULT_SCENE]

@@ -50,8 +50,8 @@ def handle_keys(ui: Ui) -> None:
     if imgui.is_popup_open("", ANY_POPUP):
         return
     for command in ui.commands:
-        keys = [key for key in ui.keymap.of(command.name) if not typing or works_while_typing(key)]
-        if any(ui.keyboard.is_pressed(key, modifiers, command.repeats) for key in keys) and not command.why_not:
+        pressed = [key for key in ui.keymap.of(command.name) if ui.keyboard.is_pressed(key, modifiers, command.repeats)]
+        if pressed and (not typing or any(map(works_while_typing, pressed))) and not command.why_not:
             run(ui, command)
 
 

@@ -38,7 +38,7 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(run: Run) -> None:
     whole, timed = bench(run)
     assert results["times"] == whole["times"][1:5] and results["path_frames"] == 6
     assert (results["planned_frames"], results["stopped"]) == (4, False)
-    assert "figure4.aff, 48 × 32, frames 0 to 5 of 6" in timed and "no speed-up" not in timed
+    assert "figure4.aff, 48 × 32, frames 0 to 5 of 6" in timed and "speed-up" in timed and "no speed-up" not in timed
     assert "wrong" not in timed
     shared = {"depth": 10, "zoom_factor": 4.0, "symmetric": False, "accelerator": "kdtree", "threads": 0}
     shared |= {"lamp_radius": None, "lamp_samples": None}
@@ -98,36 +98,34 @@ def test_cancelled_before_any_frame_is_done_there_is_nothing_to_keep(run: Run, m
 # --- on a terminal ---------------------------------------------------------------------------------
 
 
-def test_progress_shows_frame_method_time_gone_and_time_left() -> None:
-    terminal = Terminal("bench", "default", "--frames", ":8", "--size", "160x160")
-    *_, said = terminal.lines()
-    assert terminal.end() == 0
-    shown = re.findall(r"frame (\d) of 8, (?:None \(trace all\)|Paper) \S+ (\d:\d\d:\d\d) (\d:\d\d:\d\d) left", said)
-    assert len({frame for frame, _, _ in shown}) > 2
-    assert "of 8, None (trace all) " in said and "of 8, Paper " in said, "the one that is being traced"
-    assert [frame for frame, _, _ in shown] == sorted(frame for frame, _, _ in shown)
-    assert shown[-1][1] > "0:00:00"
-    assert "│ paper" in said[said.rindex(" left") :]
-
-
-def test_ctrl_c_keeps_whole_frames(room: Path, tmp_path: Path) -> None:
+def test_progress_is_shown_and_ctrl_c_keeps_whole_frames(room: Path, tmp_path: Path) -> None:
+    """Frame, method, time gone and time left, and the table in their place when it ends."""
     paths = {kind: tmp_path / f"figures.{kind}" for kind in ("json", "csv", "pdf")}
     files = ["--json", str(paths["json"]), "--csv", str(paths["csv"]), "--plot", str(paths["pdf"])]
-    terminal = Terminal("bench", "default", "--path-frames", "100000", "--size", "64x64", *files)
-    terminal.interrupt_once(r"frame ([3-9]|\d{2,}) of 100000")
+    terminal = Terminal("bench", str(room), "--path-frames", "100000", "--size", "64x64", "--threads", "1", *files)
+    terminal.interrupt_once(r"frame \d{2,} of 100000, Paper \S+ 0:00:0[1-9] \d+:\d\d:\d\d left")
     assert terminal.end() == 130
+    said = terminal.said
+    shown = re.findall(r"frame (\d+) of 100000, (?:None \(trace all\)|Paper) \S+ \d:\d\d:\d\d \d+:\d\d:\d\d left", said)
+    assert len(set(shown)) > 2 and list(map(int, shown)) == sorted(map(int, shown))
+    assert "of 100000, None (trace all) " in said, "the one that is being traced"
+    assert "│ paper" in said[said.rindex(" left") :]
     told = re.search(r"cancelled after (\d+) of 100000 frames; these are kept", terminal.said)
     assert told is not None
     done, results = int(told[1]), json.loads(paths["json"].read_text())
     assert (results["frames"], results["planned_frames"], results["stopped"]) == ([*range(done)], 100000, True)
     assert {len(values) for one in results["methods"].values() for values in one.values()} == {done}
-    assert f"default.aff, 64 × 64, frames 0 to {done - 1} of 100000, stopped" in terminal.said
+    assert f"room.aff, 64 × 64, frames 0 to {done - 1} of 100000, stopped" in terminal.said
     assert {path for path in tmp_path.iterdir() if path.stat().st_size} == {room, *paths.values()}
     assert len([*tmp_path.iterdir()]) == 4
 
 
-def test_all_methods_have_a_line_each(run: Run) -> None:
+def test_all_methods_have_a_line_each(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(
+        "viewer.cli.bench.line_up", lambda lights: asked.append(lights) or ["none", "paper", "certified"]
+    )
     results, out = bench(run, "--methods", "all, paper+rest,paper", "--frames", ":3")
-    assert {"none", "paper", "certified", "free", "certified+cache", "paper+rest"} <= set(results["methods"])
+    assert list(results["methods"]) == ["none", "paper", "certified", "paper+rest"] and len(asked) == 1
     assert all(printed_row(out, name) for name in results["methods"])
     assert max(results["memory_bytes"]["certified"]) > max(results["memory_bytes"]["none"]) == 0

@@ -1,4 +1,4 @@
-"""The window is closed in the middle of something; each ends its process."""
+"""The window is closed in the middle of something."""
 
 from __future__ import annotations
 

@@ -12,8 +12,8 @@ from viewer.util.resources import embedded_scenes
 
 def figure1(d: Driver) -> None:
     """The figure has the frame's numbers, wherever its panel is, and its parts open the views that show them."""
-    d.open(embedded_scenes()["figure4"])
     d.fix_resolution(320, 220)
+    d.open(embedded_scenes()["figure4"])
     d.change(method="paper")
     for _ in range(2):
         d.press("T").settle()

@@ -19,7 +19,6 @@ from viewer.window.panels.status import doing
 
 def lamps(d: Driver) -> None:
     """Soft shadows come step by step, and are those of the renderer; many lights are listed as they are looked for."""
-    d.fix_resolution(320, 220)
     d.c.session.set_pace(target_fps=240.0)  # there is to be no time for many samples in motion
     d.settle()
     hard = d.c.frame.color

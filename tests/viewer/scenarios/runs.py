@@ -67,7 +67,7 @@ def experimenting(d: Driver) -> None:
 
 def zooming(d: Driver) -> None:
     """A zoom test of Figure 4 starts from its panel, plays, and leaves plots with a strip of pictures under each, steps
-    to go to, and files; Escape stops another."""
+    to go to, and files."""
     d.open(embedded_scenes()["figure4"])
     runs, plan = d.c.runs, d.c.runs.zoom_plan
     d.show_panel("Zoom test").start("Zoom test")
@@ -88,11 +88,6 @@ def zooming(d: Driver) -> None:
     (path,) = d.pictures.glob("*-film*.png")
     with Image.open(path) as image:
         assert image.width == 1920 and image.height > 700
-
-    plan.steps, plan.ratio = 1000, 0.999
-    d.start("Zoom test").wait(lambda: runs.zoom_test.traced > 5, "steps")
-    d.press("Escape").settle()
-    assert 5 <= len(runs.zoom_test.results.approaches[0].steps) < 1000
 
 
 def _point_and_click(d: Driver, test: RecordedZoomTest, approach: zoom.Approach) -> None:
@@ -180,7 +175,6 @@ def asking(d: Driver) -> None:
     assert d.c.session.scene.path == other and run is runs.experiment and run.results is not None and not run.whole
     d.show_panel("Experiment")
     d.expect(f"Made in {first.name}; open that scene again", f"{first.name}, 64 × 48", "begun at")
-    _saved_results(d, "Experiment")
     d.open(first)
 
     # Escape closes what lies over the panels, one by one, and stops the run only when nothing does.
@@ -239,4 +233,4 @@ def figures(d: Driver) -> None:
     assert hidden is OcclusionMode.FULLY_RENDERED, "the card that is hidden on its left is taken for whole"
     d.open(embedded_scenes()["figure4"])
     assert not d.c.session.state.pace.fixed_size, "another scene has the window's size"
-    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 1, "frames")
+    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 0, "a frame")

@@ -20,7 +20,7 @@ def savings(d: Driver) -> None:
     """In the scene that the program opens, at rest: the sentence tells what the counters say, and how the paper's
     method compares with none; the picture stays where it is, whatever is said above it."""
     d.c.settings.change(method="paper")
-    d.fix_resolution(320, 240)
+    d.fix_resolution(240, 180)
     d.open(default_scene())
     d.wait(lambda: "fast as tracing all" in _said(d), "a comparison with none", 120.0)
     shadow, words = d.c.frame.statistics.shadow, _said(d)

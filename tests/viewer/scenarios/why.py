@@ -27,7 +27,6 @@ def why(d: Driver) -> None:
     """A culled shadow, and a primitive that is partially occluded: each click is answered by one sentence, at the top
     of the Inspector, and the names in it are links."""
     d.c.settings.change(method="paper")
-    d.fix_resolution(400, 250)
     d.open(ROOM)
     for _ in range(3):
         d.press("T").settle()
@@ -156,7 +155,7 @@ def _in_motion(d: Driver) -> None:
             assert found is not None, "it came and went"
             answers += [found] * (found is not answers[-1])
             times += [time] * (time != times[-1])
-            return len(times) > 20
+            return len(times) > 10
 
         d.wait(many_seen, "a film", 60.0)
         d.c.motion.toggle_play()

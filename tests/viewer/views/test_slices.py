@@ -23,7 +23,7 @@ CUTS = [Slice(0, 0.0), Slice(0, 0.2), Slice(1, 0.3), Slice(1, 0.9), Slice(2, 0.5
 @pytest.fixture(scope="module")
 def seen() -> Frame:
     """What is seen lies at different distances, so that some of it is before the slice."""
-    plain = with_voxels(make_frame(Settings(width=64, height=48)))
+    plain = with_voxels(make_frame(Settings(width=32, height=24)))
     depth = np.where(np.indices(plain.depth.shape)[1] % 5 == 0, np.float32(1.5), np.float32(30.0))
     return replace(plain, depth=depth)
 

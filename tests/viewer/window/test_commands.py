@@ -58,7 +58,7 @@ def test_views_are_chosen_and_ticked(ui: Ui, by_name) -> None:
         ("paper as", "preset As in the paper"), ("figure4", None), ("reload", "Reload"),
         ("occulsion", "Occlusion mode"),
         ("why traced", "Fate of shadow rays"), ("culled view", "Fate of shadow rays"),
-        ("dynamic darkened", "Moving shadows"), ("soft", "setting Lamp radius"), ("bart", "Open..."),
+        ("dynamic darkened", "Moving shadows"), ("soft", "setting Lamp radius"), ("bart", "Scenes"),
         ("why", "panel Inspector"), ("wrong", "Difference"), ("dynamic", "Moving shadows"),
         ("faster", "Two methods live"), ("table 1", "Table 1"),
         ("figure 4", "Figure 4"), ("lazy", "setting Tree kdtree-lazy"), ("theme", "Light theme"),

@@ -17,6 +17,8 @@ from tests.viewer.player import Player
 from tests.viewer.scenarios import SCENARIOS
 
 pytestmark = pytest.mark.gui
+LAST = "closing_while_loading"
+"""What ends its process, and so whatever threads windows have left."""
 
 
 @pytest.fixture(scope="module")
@@ -30,20 +32,16 @@ def size_of(number: int) -> tuple[int, int]:
     return cases(SIZES[0], SIZES[number % len(SIZES)])
 
 
-def _ends_the_process(name: str) -> bool:
-    return name.startswith("closing_while")
-
-
 @pytest.mark.parametrize(
     ("name", "size"),
     [
         pytest.param(name, size_of(number), id=name, marks=() if name == "flying" else pytest.mark.slow)
-        for number, name in enumerate(sorted(SCENARIOS, key=_ends_the_process))
+        for number, name in enumerate(sorted(SCENARIOS, key=lambda name: name == LAST))
     ],
 )
 def test_window(name: str, size: tuple[int, int], player: Player, tiny_scene_file: Path, own_settings: Path) -> None:
     (tiny_scene_file.parent / "big.aff").write_text(wall_of_triangles(40, 40, range(38)))  # takes a while to load
-    code, said = player.play(name, size, tiny_scene_file, own_settings, last=_ends_the_process(name))
+    code, said = player.play(name, size, tiny_scene_file, own_settings, last=name == LAST)
     assert code == 0, said[-6000:]
     assert "[imgui-error]" not in said, "ImGui was used wrongly"
     settings = json.loads((own_settings / "settings.json").read_text())
