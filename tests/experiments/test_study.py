@@ -90,6 +90,7 @@ def test_changes_are_said(tmp_path: Path) -> None:
         ('"default"', '"room.aff"', "line 2: scenes: 'room.aff' is given twice"),
         ("seeds = [1, 2]", "seeds = 1", "line 9: seeds: expected a list, got a whole number"),
         ("seeds = [1, 2]", "seeds = [1, 2", "not TOML: "),
+        ("seeds = [1, 2]", f"seeds = {'[' * 5000}{']' * 5000}", "its values are nested too deeply"),
         ("[path]\nframes = 8\nlast = 5", "path = 3", "line 11: path: expected a table, got a whole number"),
         ("sizes =", 'sizes = ["1x1"]\nsizes =', "line 9, column"),
     ],

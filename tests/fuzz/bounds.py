@@ -4,11 +4,16 @@ index, on arrays between forbidden pages (`tests.fuzz.guarded`), which catch wha
 Run as `python -m tests.fuzz.bounds --seconds 600 --seed 0`.  Cases run in a process of their own, which says which one
 it is at before it begins; one that ends the process, or in which a check fails, is a fault, and the next goes on.  The
 number of a case makes the same case again.
+
+With `--poison`, nothing reads memory whose life has ended: each case is done twice.  The second time whatever is freed
+is filled with other bytes at once, and the pages of numpy's arrays stay forbidden to the end.  What is traced must be
+the same, bit for bit.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import os
 import subprocess
 import sys
@@ -36,12 +41,14 @@ ROOT = Path(__file__).resolve().parents[2]
 CHECKED = ROOT / ".cache" / "kernels-checked"
 EXTREMES = np.array([0, -0.0, 1, -1, 1e-45, 1e-38, 1e9, -1e9, 1e19, 3e38, -3e38, np.inf, -np.inf, np.nan], np.float32)
 SETTLED = "settled"
+POISON = {"MALLOC_PERTURB_": "165", "SHADOWCULL_TESTS_KEEP_PAGES": "1"}  # glibc's own, and that of `guarded`
+TOGETHER = 40  # cases of a process, where each is done twice
 
 
 # --- cases: what is made first, and what is then done with it on guarded arrays -----------------------
 
 
-def _damaged_file(rng: np.random.Generator, number: int) -> Callable[[], object]:
+def _damaged_file(rng: np.random.Generator, number: int) -> Callable[[], list[np.ndarray] | None]:
     """What is left of a file that somebody has damaged, traced."""
     files = seeds()
     with tempfile.TemporaryDirectory() as folder:
@@ -55,7 +62,7 @@ def _damaged_file(rng: np.random.Generator, number: int) -> Callable[[], object]
     return lambda: readers.trace(read)
 
 
-def _walk(rng: np.random.Generator, number: int) -> Callable[[], object]:
+def _walk(rng: np.random.Generator, number: int) -> Callable[[], list[np.ndarray] | None]:
     """A nasty scene by any method, seen from its own cameras and from where no camera belongs."""
     kind = rng.integers(4)
     walk = flattened_walk(number) if kind == 0 else nasty_walk(number, lights=int(rng.choice([0, 0, 1, 20, 40])))
@@ -63,7 +70,7 @@ def _walk(rng: np.random.Generator, number: int) -> Callable[[], object]:
     return lambda: _render(rng, seen)
 
 
-def _render(rng: np.random.Generator, walk: NastyWalk) -> None:
+def _render(rng: np.random.Generator, walk: NastyWalk) -> list[np.ndarray]:
     settings = tracer.Settings(
         width=int(rng.integers(1, 60)),
         height=int(rng.integers(1, 60)),
@@ -79,14 +86,15 @@ def _render(rng: np.random.Generator, walk: NastyWalk) -> None:
         certificates=int(rng.choice([0, 10, 100_000])),
         certificate_memory=float(rng.choice([0.0, 0.01, 256.0])),
     )
-    renderer = tracer.Renderer(walk.scene, settings)
+    renderer, traced = tracer.Renderer(walk.scene, settings), []
     for when, camera in walk.frames:
         if rng.random() < 0.3:
             camera = _odd(rng, camera)
         if rng.random() < 0.2:
             renderer.settings = replace(settings, width=int(rng.integers(1, 60)), method=_method(rng, 40))
-        for _ in renderer.refine(when, camera) if rng.random() < 0.3 else [renderer.render(when, camera)]:
-            pass
+        for frame in renderer.refine(when, camera) if rng.random() < 0.3 else [renderer.render(when, camera)]:
+            traced += [frame.color.copy(), frame.primitive.copy()]
+    return traced
 
 
 def _method(rng: np.random.Generator, lights: int) -> str:
@@ -103,7 +111,7 @@ def _odd(rng: np.random.Generator, camera: Camera) -> Camera:
     return replace(camera, position=position, angle=float(rng.choice([1e-3, 1.0, 90.0, 179.0])))
 
 
-def _rays(rng: np.random.Generator, number: int) -> Callable[[], object]:
+def _rays(rng: np.random.Generator, number: int) -> Callable[[], list[np.ndarray] | None]:
     """Any rays, infinite and none at all, through triangles, spheres and cones of any size."""
     count = int(rng.choice([1, 2, 7, 100, 3000]))
     corners = rng.normal(size=(count, 3, 3)) * np.exp(rng.uniform(-12, 12, (count, 1, 1)))
@@ -125,11 +133,10 @@ def _rays(rng: np.random.Generator, number: int) -> Callable[[], object]:
     far = np.abs(np.nan_to_num(EXTREMES, posinf=np.inf))
     t = np.sort(np.where(rng.random((n, 2)) < 0.1, rng.choice(far, (n, 2)), rng.uniform(0, 9, (n, 2))), axis=1)
 
-    def ask() -> None:
+    def ask() -> list[np.ndarray]:
         world, rays = World(whole, accelerator=accelerator), tracer.RayBatch(origins, directions, t[:, 0], t[:, 1])
-        world.closest_hits(rays, threads=1)
-        world.any_hits(rays, threads=1)
-        world.occluders(rays, threads=1)
+        hits = world.closest_hits(rays, threads=1)
+        return [hits.t, hits.primitive, world.any_hits(rays, threads=1), world.occluders(rays, threads=1)]
 
     return ask
 
@@ -137,13 +144,16 @@ def _rays(rng: np.random.Generator, number: int) -> Callable[[], object]:
 CASES = (_damaged_file, _walk, _rays, _walk)
 
 
-def attempt(number: int) -> None:
-    """A case, its arrays guarded at their ends or their beginnings; raises what goes wrong."""
-    rng = np.random.default_rng(number)
+def attempt(number: int) -> str:
+    """Do a case, its arrays guarded at their ends or beginnings; returns a digest of what it traced, raises what went
+    wrong."""
+    rng, digest = np.random.default_rng(number), hashlib.sha256()
     with np.errstate(all="ignore"):
         work = CASES[number % len(CASES)](rng, number)
         with MEMORY.used(at_end=number % 8 < 6):
-            work()
+            for traced in work() or ():
+                digest.update(np.ascontiguousarray(traced).tobytes())
+    return digest.hexdigest()
 
 
 # --- processes -------------------------------------------------------------------------------------
@@ -155,14 +165,15 @@ def _go_on(number: int, end: int, until: float) -> None:
     sys.unraisablehook = lambda e: unraised.append(f"{e.exc_type.__name__}: {e.exc_value}")  # within kernels
     while time.time() < until and number < end:
         print(number, flush=True)
+        digest = ""
         try:
-            attempt(number)
+            digest = attempt(number)
         except Exception:
             unraised.append(traceback.format_exc())
         if unraised:
             print("fault", *unraised, flush=True)
             os._exit(1)
-        print(SETTLED, flush=True)
+        print(SETTLED, digest, flush=True)
         number += 1
 
 
@@ -195,6 +206,29 @@ def run(seconds: float, seed: int) -> int:
     return faults
 
 
+def run_poisoned(seconds: float, seed: int) -> int:
+    """Do cases twice for some seconds, the second time with memory that is poisoned as it is freed; how many differ."""
+    number, differ, until = seed, 0, time.time() + seconds
+    while time.time() < until:
+        told = []
+        for more in ({}, POISON):
+            command = [sys.executable, "-m", "tests.fuzz.bounds", "--from", str(number), "--count", str(TOGETHER)]
+            done = subprocess.run(
+                [*command, "--until", "inf"], cwd=ROOT, env=os.environ | more, capture_output=True, text=True
+            )
+            told.append([line for line in done.stdout.splitlines() if line.startswith((SETTLED, "fault"))])
+            if done.returncode:
+                told[-1].append(f"exit code {done.returncode} after {done.stdout.splitlines()[-1:]}")
+        clean, poisoned = told
+        for k in range(max(map(len, told))):
+            if clean[k : k + 1] != poisoned[k : k + 1]:
+                differ += 1
+                print(f"case {number + k}: {clean[k : k + 1]}, poisoned {poisoned[k : k + 1]}", flush=True)
+        number += TOGETHER
+    print(f"cases {seed} to {number - 1}, poisoned: {differ} differ")
+    return differ
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=60.0)
@@ -202,10 +236,13 @@ def main() -> int:
     parser.add_argument("--from", type=int, dest="first", help=argparse.SUPPRESS)
     parser.add_argument("--until", type=float, help=argparse.SUPPRESS)
     parser.add_argument("--count", type=int, default=1 << 62, help=argparse.SUPPRESS)
+    parser.add_argument("--poison", action="store_true", help="each case twice: what was freed must not be read")
     options = parser.parse_args()
     if options.first is not None:
         _go_on(options.first, options.first + options.count, options.until)
         return 0
+    if options.poison:
+        return 1 if run_poisoned(options.seconds, options.seed) else 0
     return 1 if run(options.seconds, options.seed) else 0
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import mmap
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -29,6 +30,10 @@ _libc.malloc.argtypes = [ctypes.c_size_t]
 _libc.realloc.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
 _libc.free.argtypes = [ctypes.c_void_p]
 _FORBIDDEN, _ALLOWED, _PRIVATE = 0, 3, 0x22  # PROT_NONE; PROT_READ | PROT_WRITE; MAP_PRIVATE | MAP_ANONYMOUS
+
+_FIXED = 0x10  # MAP_FIXED
+KEPT = "SHADOWCULL_TESTS_KEEP_PAGES" in os.environ
+"""Whether what is freed stays forbidden to the end of the process."""
 
 _Malloc = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
 _Calloc = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t)
@@ -88,7 +93,9 @@ class GuardedMemory:
 
     def _free(self, context: int, address: int, size: int) -> None:
         block = self._blocks.pop(address, None)
-        if block is not None:
+        if block is not None and KEPT:  # nobody gets these pages again, and nothing is in them
+            _libc.mmap(block[0], block[1], _FORBIDDEN, _PRIVATE | _FIXED, -1, 0)
+        elif block is not None:
             _libc.munmap(block[0], block[1])
         elif address:
             _libc.free(address)

@@ -273,6 +273,8 @@ def read_study(path: Path, own_scenes: Mapping[str, Path]) -> Study:
         raise StudyError(f"{path}: no study: it is not text in UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise StudyError(f"{path}: not TOML: {error}") from None
+    except RecursionError:
+        raise StudyError(f"{path}: its values are nested too deeply") from None
     return _Reader(path, text).study(data, own_scenes)
 
 

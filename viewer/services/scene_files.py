@@ -35,7 +35,10 @@ def find_scene(stored: str, picture: Path) -> Path | None:
     embedded = resources.embedded_scenes().get(path.stem)
     if embedded is not None and (stored == path.stem or path.parent.name == embedded.parent.name):
         candidates.append(embedded)
-    return next((c for c in candidates if c.is_file()), None)
+    try:
+        return next((c for c in candidates if c.is_file()), None)
+    except OSError:  # no name that a file can have
+        return None
 
 
 class FileWatch:

@@ -39,6 +39,7 @@ MISTAKES = {
         ("render broken.png", "cannot be read as a picture"),
         ("render gone.png", "no such file"),
         ("render orphan.png", "its scene is gone"),
+        ("render endless.png", "endless.png: its scene is gone"),
         ("zoom room.aff --primitive 0 --camera gone.png", "--camera: gone.png: no such file"),
     ],
     "render room.aff": [
@@ -202,7 +203,7 @@ def files(room: Path) -> None:
     for name in ("taken/0110.png", "file", "notes.md", "broken.png"):
         Path(name).write_bytes(b"no picture")
     Image.new("RGB", (4, 4)).save("plain.png")
-    for name, scene in (("saved.png", "room.aff"), ("orphan.png", "gone.aff")):
+    for name, scene in (("saved.png", "room.aff"), ("orphan.png", "gone.aff"), ("endless.png", "a" * 5000)):
         state = ViewState(str(Path(scene).absolute()), camera=Camera((0.0, 2.0, 3.0), (0.0, -0.5, -1.0)))
         carried = capture.Carried(codec.state_to_json(state, of_picture=True), state.camera.to_json())
         capture.write(Path(name), np.zeros((4, 4, 3), np.uint8), carried.text())
