@@ -57,10 +57,6 @@ class Meetings:
         """(n,) the nearest primitive, of equally near ones the first; -1 for a miss."""
         return np.where(np.isfinite(self.t).any(axis=1), self.t.argmin(axis=1), -1)
 
-    def any_of(self, primitives: np.ndarray) -> np.ndarray:
-        """(n,) bool: is any of the primitives, given as (p,) bool, met?"""
-        return (np.isfinite(self.t) & primitives).any(axis=1)
-
 
 def meet_all(world: tracer.World, rays: Rays, there: np.ndarray) -> Meetings:
     """Rays against all primitives that are `there`, (p,) bool."""

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import tracer
 from tests.scenes import loaded
-from tests.sweeps import ACCELERATORS, cases
+from tests.sweeps import ACCELERATORS, ALL, cases
 from tests.tracing.certified_twin import NAMES, Twin
 from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.random_worlds import quickly
@@ -55,6 +55,7 @@ def test_cells_of_nasty_scenes_are_what_dense_sampling_says(accelerator: str):
     assert (tried[list(STATES)] > cases(1000, 5000)).all()
 
 
+@pytest.mark.skipif(not ALL, reason="left to make test-all")
 def test_cells_of_kitchen_are_what_dense_sampling_says(bart: Path):
     """Without what moves; every tenth certificate against every triangle in turn."""
     whole = loaded(bart / "kitchen" / "kitchen.aff")

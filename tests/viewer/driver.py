@@ -84,7 +84,7 @@ class Driver:
             nonlocal quiet, traced
             still = self.c.frame is not None and not self.c.active and self.c.history.frames == traced
             quiet, traced = quiet + 1 if still else 0, self.c.history.frames
-            return quiet >= 5
+            return quiet >= 3
 
         self.frames(1)
         return self.wait(rested, "an idle picture", seldom=SETTLING).frames(2)

@@ -66,7 +66,8 @@ def test_bench_writes_an_entry_per_frame_and_prints_the_table(run: Run) -> None:
         most.append(f"{max(saved):.1%} ({frame})")
     wrong, due = sum(paper["wrong"]), sum(paper["shadow_rays_due"])
     extra = sum(paper["occlusion_tests"]) / (4 * 48 * 32)
-    assert printed_row(out, "paper")[1:7] == [*average, f"{wrong:,} ({wrong / due:.3%})", *most, f"{extra:.3f}"]
+    row = printed_row(out, "paper")
+    assert row[1:4] == [*average, f"{wrong:,} ({wrong / due:.3%})"] and row[5:8] == [*most, f"{extra:.3f}"]
 
 
 def test_options_of_the_paper_reach_it(run: Run) -> None:
