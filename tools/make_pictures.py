@@ -95,7 +95,7 @@ def still(d: Driver) -> None:
 
 def _begin(d: Driver) -> None:
     """Whole pictures only, from the first frame on, and the pointer out of the way, as it is drawn, too."""
-    d.c.session.set_pace(progressive=False)
+    d.c.session.set_pace(progressive=False, fixed_size=False)
     d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))
     d.press("Backspace").settle()  # what pictures in parts have taught is forgotten
     d.press("Home")
