@@ -14,6 +14,7 @@ A kernel that names the fields is made from the declaration, so that neither can
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, NamedTuple, get_type_hints
 
@@ -87,7 +88,8 @@ def rows_of(record: type) -> Any:
 _POINTERS = {"float32": f32_at, "float64": f64_at, "int32": i32_at, "int64": i64_at, "uint8": u8_at}
 
 
-class _Array(NamedTuple):
+@dataclass(frozen=True)  # no tuple, which is equal to `Rows` of the same numbers: `Annotated` takes either for both
+class _Array:
     """An array of so many dimensions; of none for a flat pointer to its numbers, whose shape nobody is told."""
 
     dimensions: int
