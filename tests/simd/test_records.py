@@ -11,11 +11,11 @@ from tracer.runtime.kernels import kernel
 from tracer.simd import local_memory
 from tracer.simd.records import (
     F32,
+    I32,
     Bytes,
     F32At,
     F32x2D,
     F32x3D,
-    I32,
     I32x2D,
     IntRow,
     Memory,
