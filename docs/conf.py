@@ -98,5 +98,4 @@ def setup(app: Sphinx) -> None:
 nitpick_ignore_regex = [
     ("py:.*", r"numpy\..*"),
     ("py:class", r"collections\.Counter"),
-    ("py:class", r"tracer\.kernels\.Entry"),  # machine code: not for callers
 ]

@@ -54,12 +54,12 @@ def test_what_fits_is_tried_once_and_then_in_the_cache(package: Callable[..., Pa
     root = tmp_path / "cache"
     trial = package(trial=f"import os; assert os.environ['NUMBA_CPU_NAME'] == {LEVEL!r}; print({ANSWER!r})")
     assert prebuilt.taken_into(root) == LEVEL
-    assert (root / KERNEL).read_bytes() == b"machine code"
+    assert (root / LEVEL / KERNEL).read_bytes() == b"machine code"
     trial.write_text("raise SystemExit(1)")
     assert prebuilt.taken_into(root) == LEVEL, "it was tried a second time"
 
 
-def test_what_was_compiled_here_stays(package: Callable[..., Path], tmp_path: Path) -> None:
+def test_what_was_compiled_for_this_processor_stays(package: Callable[..., Path], tmp_path: Path) -> None:
     package()
     own = tmp_path / "cache" / KERNEL
     own.parent.mkdir(parents=True)
@@ -67,30 +67,50 @@ def test_what_was_compiled_here_stays(package: Callable[..., Path], tmp_path: Pa
     assert prebuilt.taken_into(tmp_path / "cache") == LEVEL and own.read_bytes() == b"compiled here"
 
 
+COMPILES = f"""
+import os, pathlib
+(pathlib.Path(os.environ["SHADOWCULL_CACHE_DIR"]) / {LEVEL!r} / {KERNEL!r}).with_suffix(".2.nbc").touch()
+print({ANSWER!r})
+"""
+
+
 @pytest.mark.parametrize(
     ("given", "tried"),
     [
         ({"damaged": True}, True),
+        ({"trial": COMPILES}, True),
         ({"trial": "print('another picture')"}, True),
         ({"trial": "import os; os.abort()"}, True),
-        ({"trial": "import time; time.sleep(60)"}, True),
         ({"versions": {"numba": "0.1"}}, False),
         ({"files": {}}, False),
         ({"files": {"x86-64-v9": {}}}, False),
         ({"versions": 3, "files": 5}, False),
+        ({"answer": None}, False),
+        ({"files": {LEVEL: ["no names"]}}, False),
+        ({"files": {LEVEL: {"../../outside": "0"}}}, False),
     ],
     ids=lambda given: str(given)[:40],
 )
 def test_what_does_not_fit_is_as_if_it_were_not_there(
-    given: dict[str, Any], tried: bool, package: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    given: dict[str, Any], tried: bool, package: Callable[..., Path], tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(prebuilt, "SECONDS", 2.0)
     root = tmp_path / "cache"
     trial = package(**given)
     assert prebuilt.taken_into(root) == "" and not list(root.rglob("*.nbc"))
     trial.write_text(f"print({ANSWER!r})")
     assert prebuilt.taken_into(root) == "", "what failed once is not tried again"
     assert len(list(root.glob("*.refused"))) == tried
+
+
+def test_what_takes_too_long_is_tried_again_at_the_next_start(
+    package: Callable[..., Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trial = package(trial="import time; time.sleep(60)")
+    monkeypatch.setattr(prebuilt, "SECONDS", 0.5)
+    assert prebuilt.taken_into(tmp_path / "cache") == ""
+    trial.write_text(f"print({ANSWER!r})")
+    monkeypatch.setattr(prebuilt, "SECONDS", 60.0)
+    assert prebuilt.taken_into(tmp_path / "cache") == LEVEL
 
 
 def test_a_lesser_processor_and_no_package_compile(

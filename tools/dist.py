@@ -38,7 +38,7 @@ def build(folder: Path) -> tuple[Path, Path]:
 
     (sources,) = SdistBuilder(str(ROOT)).build(directory=str(folder), versions=["standard"])
     with tempfile.TemporaryDirectory() as unpacked, tarfile.open(sources) as archive:
-        archive.extractall(unpacked, filter="data")
+        archive.extractall(unpacked, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
         (root,) = Path(unpacked).iterdir()
         (wheel,) = WheelBuilder(str(root)).build(directory=str(folder), versions=["standard"])
     return Path(sources), Path(wheel)

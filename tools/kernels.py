@@ -8,7 +8,6 @@ compiled for this very processor, bit for bit.  How they are used: `tracer/runti
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import platform
@@ -77,11 +76,7 @@ def write_package(folder: Path, levels: list[str]) -> None:
         print(f"compiling for {level}", flush=True)
         if compiled(folder / level, level) != expected:
             raise ValueError(f"kernels for {level} trace another picture than those for this processor")
-        paths = [path for path in (folder / level).rglob("*") if path.is_file() and path.parent != folder / level]
-        files[level] = {
-            path.relative_to(folder / level).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in sorted(paths)
-        }
+        files[level] = prebuilt.digests(folder / level)
     manifest = {"versions": prebuilt.versions(), "answer": expected, "files": files}
     (folder / prebuilt.MANIFEST).write_text(json.dumps(manifest, indent=1), encoding="utf-8")
     (folder / "__init__.py").write_text('"""Compiled kernels of Shadowcull."""\n', encoding="utf-8")

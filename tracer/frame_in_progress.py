@@ -151,7 +151,7 @@ class FrameInProgress:
         self.history.follow_lights(self.lights, self._lamps)
         self.history.follow_rest(self.resting, state.world.outlines, self.workers)
         for method in self.methods:
-            method.invalidate(self)
+            method.update(self)
 
     def trace_primary_rays(self) -> None:
         """What does each pixel see?"""

@@ -39,7 +39,7 @@ TRACKS = {
 }
 
 
-def place_and_follow(world: tracer.World, rest: Rest, time: float) -> tuple[Changed, Changed]:
+def place_and_update(world: tracer.World, rest: Rest, time: float) -> tuple[Changed, Changed]:
     """Place the world at a time as a frame does; which objects have started to move since, and which stopped."""
     before, poses = rest.now, world.pose(time)
     world.place(poses, rest.update(poses, world.primitives, world.certain(poses)))
@@ -55,7 +55,7 @@ def test_an_object_rests_from_the_second_frame_in_which_it_is_the_same():
     world, rest = tracer.World(made), Rest(4)
     rested, changed = [], []
     for time in (0.0, 0.5, 1.25, 1.75, 1.75, 2.25, 2.75, 3.0, 3.5):
-        started, stopped = place_and_follow(world, rest, time)
+        started, stopped = place_and_update(world, rest, time)
         rested.append("".join(".SBJ"[i] for i in np.flatnonzero(rest.now.since)))
         changed.append(tuple("".join(".SBJ"[i] for i in c.which) for c in (started, stopped)))
         there = rest.now.since > 0
@@ -73,7 +73,7 @@ def test_an_object_rests_from_the_second_frame_in_which_it_is_the_same():
 def test_a_box_is_around_what_started_where_it_rested():
     world, rest = tracer.World(scene(floor(), dynamic=(kite("sails"),), animation=Animation(TRACKS))), Rest(2)
     for time in (0.5, 1.5):
-        started, _ = place_and_follow(world, rest, time)
+        started, _ = place_and_update(world, rest, time)
     assert np.allclose(started.boxes, [[-2.1, -0.6, 5.0, -0.9, 0.6, 5.0]], atol=1e-4)
     assert np.allclose(world.object_boxes()[1], [-0.6, -0.6, 5.0, 0.6, 0.6, 5.0], atol=1e-4)
 
@@ -85,7 +85,7 @@ def test_what_deforms_does_not_rest(bart: Path):
     deforms, rests, shape = [], [], np.empty(0)
     for number in [*range(0, content.frames, 20), content.frames - 1, content.frames - 1]:
         time, before = content.frame_time(number), shape
-        place_and_follow(world, rest, time)
+        place_and_update(world, rest, time)
         shape, _ = deformed(content.objects[index].deformation, time)
         deforms.append(number > 0 and not np.array_equal(shape, before))
         rests.append(bool(rest.now.since[index]))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from numba.core.registry import cpu_target
@@ -46,9 +46,10 @@ def warm_up(
 
     `progress` is given what is being compiled; what it raises (Cancelled) passes through.
     """
-    report = progress or (lambda what, fraction: None)
-    with _lock:
-        name = _variant(lights, accelerator)
+    report, name = progress or (lambda what, fraction: None), _variant(lights, accelerator)
+    if name in _ready or (name in _draws and picture_only):
+        return
+    with _alone(report):
         if name in _ready or (name in _draws and picture_only):
             return
         done: set[str] = set()
@@ -79,6 +80,17 @@ def warm_up(
             _ready.add(name)
             _mark_kept(name, picture_only=False)
         report("ready", 1.0)
+
+
+@contextmanager
+def _alone(report: Progress) -> Iterator[None]:
+    """Compile one thing at a time; whoever waits can be cancelled."""
+    while not _lock.acquire(timeout=0.1):
+        report("waiting for other kernels", 0.0)
+    try:
+        yield
+    finally:
+        _lock.release()
 
 
 def ready_for(method: str, lights: int = 1, accelerator: str = "bvh8") -> bool:

@@ -83,7 +83,7 @@ class Run(ABC, Generic[Results]):
         self.stopping = self.done = False
         self._scene: Scene | None = scene
         self._origin = Origin(scene)
-        self._left = TimeLeft()
+        self._left, self._began = TimeLeft(), 0.0
         self._wake: Callable[[], None] = ignore
         self._lock = threading.Lock()
         self._newest: tuple[Frame, str] | None = None
@@ -104,8 +104,8 @@ class Run(ABC, Generic[Results]):
 
         `wake` is called whenever there is something new to show.  What goes wrong is raised, and kept as `error`."""
         assert self._scene is not None, "a run is done once"
-        began, self._wake = time.monotonic(), wake
-        self._left.mark(0, self.frames)
+        self._wake = wake
+        self._begin()
         growing: Results | None = None
         try:
             for growing in self.steps(self._scene, world, lambda: self.stopping or cancel()):
@@ -118,7 +118,7 @@ class Run(ABC, Generic[Results]):
             self.error = error
             raise
         finally:
-            self.seconds = time.monotonic() - began
+            self.seconds = time.monotonic() - self._began
             if growing is not None:  # once more: they may say now that the run was stopped
                 self.results = self.copy(growing)
             self._scene = None
@@ -136,6 +136,12 @@ class Run(ABC, Generic[Results]):
 
         make_all_ready(methods, len(scene.lights), accelerator, report)
         self.label = STARTING
+        self._begin()
+
+    def _begin(self) -> None:
+        """Count time from now on."""
+        self._began, self._left = time.monotonic(), TimeLeft()
+        self._left.mark(0, self.frames)
 
     def progressed(self, label: str, frame: Frame | None = None) -> None:
         """Count a frame that has been traced, in words, and show it to whoever takes frames."""

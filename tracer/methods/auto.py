@@ -72,10 +72,10 @@ class Auto(ShadowMethod):
         yield
         self.policy.spend(self.services.clock() - start)
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         if self._plan.needs_certificates:
             with self._paid():
-                self._certified.invalidate(frame)
+                self._certified.update(frame)
                 if self._certified.made_now:
                     self.policy.made_ready()
 

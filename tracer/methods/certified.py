@@ -127,7 +127,7 @@ class CertifiedCells(ShadowMethod):
     def follows_rest(self) -> bool:
         return True
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         self.made_now = self.store is None
         if self.store is None:
             self.store = CertificateStore(
@@ -142,13 +142,13 @@ class CertifiedCells(ShadowMethod):
 
     def take_requests(self, frame: FrameView, seconds: float) -> None:
         """Make room for what this frame's rays request; it may certify for so many seconds."""
-        assert self.scheduler is not None, "followed before"
+        assert self.scheduler is not None, "updated before"
         self._requests = self.scheduler.begin(len(frame.tiles), Budget(frame.settings.certificates, seconds))
 
     def certify(self, frame: FrameView, seconds: float) -> None:
         """Certify for so many seconds, at most, what is requested."""
         store, tiles = self.store, frame.tiles
-        assert store is not None and self.scheduler is not None, "followed before"
+        assert store is not None and self.scheduler is not None, "updated before"
         if not store.certified.any():
             return
 
@@ -165,7 +165,7 @@ class CertifiedCells(ShadowMethod):
         return True
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         requests = self._requests if learns and self._requests is not None else make_requests(0)
         view = self.store.view(len(frame.tiles), requests, self._cell if learns else np.empty(0, np.int32))
         rows = CELL_POINT_ROWS + (LAMP_ANSWER_ROWS if view.lamps.known.any() else 0)
@@ -185,11 +185,11 @@ class CertifiedCells(ShadowMethod):
                 self._keep_within(frame)
 
     def _keep_within(self, frame: FrameView) -> None:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         self.store.keep_within(1e6 * frame.settings.certificate_memory, self._cell)
 
     def _words_seen(self) -> NDArray[np.unsignedinteger]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         return self.store.at_pixels(self._cell)
 
     def layers(self, frame: FrameView) -> dict[str, NDArray]:

@@ -125,7 +125,7 @@ class CertifiedLights(ShadowMethod):
     def begin(self, frame: FrameView) -> None:
         self._counts = Counts()
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         self.made_now = self.store is None
         if self.store is None:
             self.store = RegionStore(self.services.world, frame.shading.lamps, self.services.clock)
@@ -140,7 +140,7 @@ class CertifiedLights(ShadowMethod):
     def certify(self, frame: FrameView, seconds: float) -> None:
         """Certify regions for so many seconds, at most."""
         store = self.store
-        assert store is not None, "followed before"
+        assert store is not None, "updated before"
         selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._recent(frame.shading.lamps))
         block, shares = pack(selection), np.array_split(np.arange(len(frame.tiles)), 8 * frame.workers)
 
@@ -151,7 +151,7 @@ class CertifiedLights(ShadowMethod):
         self._counts = store.certify(Budget(frame.settings.certificates, seconds), frame.workers, frame.cancel)
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         looks = np.zeros((len(frame.lights), WORDS), np.int64)
         selection = Selection(self.store.view(), looks, self._recent(frame.shading.lamps))
         if not self._has_lamps(frame.shading.lamps):
@@ -164,7 +164,7 @@ class CertifiedLights(ShadowMethod):
         return bool((np.diff(lamps.first) >= self.services.cost_model.least_samples).any())
 
     def _recent(self, lamps: Lamps) -> RecentOccluders:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         placed = self.services.world.placed
         if not len(self._rows) and self._has_lamps(lamps):
             triangles = self.services.world.triangles_of(0)
@@ -183,7 +183,7 @@ class CertifiedLights(ShadowMethod):
         )
 
     def keep(self, frame: FrameView) -> None:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         self.store.keep_within(1e6 * frame.settings.certificate_memory)
 
     def report(self, statistics: FrameStatistics) -> None:

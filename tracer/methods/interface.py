@@ -129,8 +129,8 @@ class ShadowMethod:
         """Whether objects that rest are to count as static in this frame."""
         return False
 
-    def invalidate(self, frame: FrameView) -> None:
-        """Drop what no longer holds where objects and lights are now."""
+    def update(self, frame: FrameView) -> None:
+        """Bring what is kept up to date with where objects and lights are now; make it, the first time."""
 
     def prepare(self, frame: FrameView) -> None:
         """Do what is worth doing before shading; primary hits are in the buffers.  May raise Cancelled."""

@@ -120,7 +120,7 @@ class Environments(CellsOfSpace):
     store: EnvironmentStore | None
     coarse = 0  # how often cells are divided at most, 0 for as often as is worth it
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         settings, lamps = frame.settings, frame.shading.lamps
         if self.store is None or self._memory != settings.certificate_memory:
             memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
@@ -133,7 +133,7 @@ class Environments(CellsOfSpace):
 
     def prepare(self, frame: FrameView) -> None:
         store, settings = self.store, frame.settings
-        assert store is not None, "followed before"
+        assert store is not None, "updated before"
         if settings.certificates > 0 and store.waits:
             want = partial(self._want, frame, store)
             self._counts = store.work(want, settings.certificate_seconds, frame.cancel)
@@ -152,7 +152,7 @@ class Environments(CellsOfSpace):
         for_each_chunk(work, len(shares), frame.workers, frame.cancel)
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         if not len(self.store.places):
             return []
         looks = np.zeros((len(self.store.places), WORDS), np.int64)
@@ -161,7 +161,7 @@ class Environments(CellsOfSpace):
         return [Stage(view, find=find, select=select, choose=chooses, rows=CELL_ROWS, looks=looks)]
 
     def layers(self, frame: FrameView) -> dict[str, Any]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         found = super().layers(frame)
         return found | {"cell lights": self.store.asked_in(found["cells"])}
 
@@ -190,7 +190,7 @@ class SampledEnvironments(Environments):
 
     def prepare(self, frame: FrameView) -> None:
         store, settings = self.store, frame.settings
-        assert store is not None, "followed before"
+        assert store is not None, "updated before"
         if settings.certificates > 0 and store.waits:
             points = seen_points(frame.buffers.primitive, frame.buffers.depth, frame.rays)
             want, by = partial(self._want, frame, store), settle_by_samples(self.services.world, points)

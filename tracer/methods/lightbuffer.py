@@ -101,7 +101,7 @@ class LightBuffer(ShadowMethod):
     def follows_rest(self) -> bool:
         return True
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         """Drop the buffers of lights that have moved, and what rested otherwise."""
         lamps, before = frame.shading.lamps, self._last
         points = np.diff(lamps.first) == 1

@@ -64,7 +64,7 @@ class Lightcuts(ShadowMethod):
         self._asked = frame.settings.lightcuts_error
         self._errors: CutErrors | None = None
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         lamps, before = frame.shading.lamps, self._lamps
         if before is None or not all(np.array_equal(a, b) for a, b in zip(lamps, before, strict=True)):
             self._lamps = lamps

@@ -74,10 +74,10 @@ class CertifiedLightcuts(Lightcuts):
         super().begin(frame)
         self._certified.begin(frame)
 
-    def invalidate(self, frame: FrameView) -> None:
-        super().invalidate(frame)
+    def update(self, frame: FrameView) -> None:
+        super().update(frame)
         if self._shades(frame):
-            self._certified.invalidate(frame)
+            self._certified.update(frame)
 
     def prepare(self, frame: FrameView) -> None:
         if self._shades(frame):
@@ -87,7 +87,7 @@ class CertifiedLightcuts(Lightcuts):
         if not self._shades(frame):
             return []
         store, tree = self._certified.store, self._tree
-        assert store is not None and tree is not None, "followed before"
+        assert store is not None and tree is not None, "updated before"
         cuts, lamps = self._cuts(frame, worker, learns), len(frame.lights)
         whole = cuts.clusters
         own = {name: getattr(whole, name).copy() for name in ("boxes", "colors", "children", "reps", "falls")}

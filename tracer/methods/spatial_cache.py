@@ -28,7 +28,7 @@ class CellsOfSpace(ShadowMethod):
         self._cell = np.full(frame.settings.width * frame.settings.height, -1, np.int32)
 
     def layers(self, frame: FrameView) -> dict[str, Any]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         cell = self._cell.reshape(frame.buffers.primitive.shape)
         return {"cells": cell, "certificates": self.store.at_pixels(cell)}
 

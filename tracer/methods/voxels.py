@@ -90,7 +90,7 @@ class Voxels(CellsOfSpace):
 
     store: VoxelStore | None
 
-    def invalidate(self, frame: FrameView) -> None:
+    def update(self, frame: FrameView) -> None:
         settings = frame.settings
         if self.store is None or self._memory != settings.certificate_memory:
             memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
@@ -100,19 +100,19 @@ class Voxels(CellsOfSpace):
         self.store.update(frame.shading.lamps, frame.resting)
 
     def prepare(self, frame: FrameView) -> None:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         settings = frame.settings
         if settings.certificates > 0:
             self._counts = self.store.classify(settings.certificate_seconds, frame.workers, frame.cancel)
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         return [
             Stage(self.store.view(self._cell if learns else NOWHERE), find=find, choose=choose, rows=POINT_MODE_ROWS)
         ]
 
     def layers(self, frame: FrameView) -> dict[str, Any]:
-        assert self.store is not None, "followed before"
+        assert self.store is not None, "updated before"
         return super().layers(frame) | {"voxels": self.store.shown()}
 
     def because(self, answered: Answered) -> CullReason:

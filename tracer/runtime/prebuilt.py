@@ -1,13 +1,12 @@
 """Kernels that were compiled elsewhere: the package `shadowcull-kernels`, where it is installed.
 
 It holds a cache (`kernel_cache`) for one version of Python and of numba, once for each level of x86-64 that it was made
-for.  What suits this machine is copied into the user's cache before anything is compiled, and from then on code is made
-for that level, so that what lies there is found.
+for.  What suits this machine is copied into a cache of that level before anything is compiled, and from then on code is
+made for the level, so that what lies there is found.
 
-Reading a cache runs what it holds.  So a file is taken only if the package's manifest has its SHA-256, and another
-process tries the kernels first: where that dies, or traces a picture that is not the one it should be, this process
-compiles as if there were no package.  numba promises nothing about caches of other machines: where anything differs,
-the package is not used.
+numba promises nothing about caches of other machines.  So all versions must be the same, each file must have the
+SHA-256 of the manifest, which finds damage, and another process uses the kernels first.  Where that dies, has to
+compile any, or traces another picture than it should, this process compiles as if there were no package.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -37,16 +37,19 @@ _V2 = "cx16 sahf popcnt sse3 sse4.1 sse4.2 ssse3"
 _V3 = f"{_V2} avx avx2 bmi bmi2 f16c fma lzcnt movbe xsave"
 LEVELS = {"x86-64-v4": f"{_V3} avx512f avx512bw avx512cd avx512dq avx512vl".split(), "x86-64-v3": _V3.split()}
 """Features, as LLVM calls them, that a processor needs for a level; the highest level first."""
+_NAME = re.compile(r"[0-9a-f]{16}/[\w.-]+")  # of a file in the cache
 
 
 def wanted_root() -> Path:
-    """Return the folder of the user's cache, if it can be written to."""
-    base = os.environ.get("SHADOWCULL_CACHE_DIR")
+    """Return the folder of the user's cache; code for a named level of processors has one of its own in it."""
+    base, level = os.environ.get("SHADOWCULL_CACHE_DIR"), os.environ.get("NUMBA_CPU_NAME")
     if base:
-        return Path(base).expanduser()
-    if (_ROOT / "pyproject.toml").exists():
-        return _ROOT / ".cache" / "kernels"
-    return Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
+        root = Path(base).expanduser()
+    elif (_ROOT / "pyproject.toml").exists():
+        root = _ROOT / ".cache" / "kernels"
+    else:
+        root = Path(platformdirs.user_cache_dir("shadowcull")) / "kernels"
+    return root / level if level in LEVELS and root.name != level else root
 
 
 def runs_level(level: str) -> bool:
@@ -95,10 +98,12 @@ def taken_into(root: Path) -> str:
         _take(folder / level, manifest["files"][level], manifest["answer"], root, level)
         taken.touch()
         return level
-    except (OSError, ValueError, subprocess.SubprocessError):
+    except (ValueError, subprocess.CalledProcessError) as error:
         with suppress(OSError):
-            refused.touch()
-        return ""
+            refused.write_text(str(error), encoding="utf-8")
+    except (OSError, subprocess.TimeoutExpired):
+        pass  # the next start tries again
+    return ""
 
 
 def _environment(level: str) -> dict[str, str]:
@@ -113,34 +118,44 @@ def _package() -> tuple[Path, dict[str, Any], str] | None:
             return None
         folder = Path(spec.submodule_search_locations[0])
         manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-        level = next((one for one in LEVELS if one in manifest["files"] and runs_level(one)), "")
-        fits = level and manifest["versions"] == versions()
-    except (OSError, ValueError, LookupError, TypeError):
+        level = next((one for one in LEVELS if runs_level(one)), "")
+        files, answer = manifest["files"][level], manifest["answer"]  # of a lower level all code would be slower
+        fits = manifest["versions"] == versions() and isinstance(answer, str)
+        named = all(_NAME.fullmatch(name) and isinstance(digest, str) for name, digest in files.items())
+    except Exception:  # whatever is wrong with it
         return None
-    return (folder, manifest, level) if fits else None
+    return (folder, manifest, level) if fits and named else None
 
 
 def _take(folder: Path, files: dict[str, str], answer: str, root: Path, level: str) -> None:
-    """Copy the files of a level, each with its SHA-256, into the cache, if another process gives the answer with them.
+    """Copy the files of a level, each with its SHA-256, into the cache, if another process gives the answer with them
+    and no others.
 
-    Raises OSError, ValueError for a file that is not as it was made or another answer, and SubprocessError."""
+    Raises OSError, ValueError for files that are not as they were made or another answer, and SubprocessError."""
     root.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=root, prefix="prebuilt-") as kept:
-        for name, digest in files.items():
-            data = (folder / name).read_bytes()
-            if hashlib.sha256(data).hexdigest() != digest:
-                raise ValueError(f"{name} is damaged")
-            path = Path(kept) / name
-            path.parent.mkdir(exist_ok=True)
-            path.write_bytes(data)
+        made = Path(kept) / level
+        for name in files:
+            path = made / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(folder / name, path)
         modules = os.pathsep.join([str(_ROOT), *filter(None, sys.path)])
         environment = os.environ | _environment(level) | {"SHADOWCULL_CACHE_DIR": kept, "PYTHONPATH": modules}
+        if digests(made) != files:
+            raise ValueError("files are damaged")
         command = [sys.executable, "-P", "-m", TRIAL]
         tried = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=SECONDS, check=True)
         if tried.stdout.strip() != answer:
             raise ValueError("another picture was traced")
+        if digests(made) != files:
+            raise ValueError("kernels had to be compiled")
         for name in files:
-            path = root / name
-            path.parent.mkdir(exist_ok=True)
-            if not path.exists():  # what was compiled here is as good
-                shutil.move(Path(kept) / name, path)
+            path = root / level / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(made / name, path)
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Return the SHA-256 of each file in the folders of a cache, by its path there."""
+    paths = (path for path in folder.glob("*/*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}

@@ -61,12 +61,21 @@ def main(arguments: Sequence[str], open_window: OpenWindow) -> int:
     except (KeyboardInterrupt, Cancelled):
         say("cancelled")
         return INTERRUPTED
-    except BrokenPipeError:
-        # Whoever read our output has gone (`| head`): no error, but nothing may be flushed to it at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # whoever read our output has gone (`| head`): no error
+        _flush_nothing_more()
         return FAILED
     except Exception as error:
+        if isinstance(error, OSError):  # of the output, perhaps: its disk is full
+            _flush_nothing_more()
         return _failed(error)
+
+
+def _flush_nothing_more() -> None:
+    """Let an output that takes nothing not be tried again at exit, which would be said and change the exit code."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _run(name: str, arguments: list[str]) -> int:

@@ -101,7 +101,10 @@ class PaperFigures:
         def measure(c: Controller) -> None:
             c.runs.experiment_plan = ExperimentPlan({BY_MODES}, verify=True)
             c.runs.start_experiment()
+            if self._way_back:
+                c.notices.say(f"Table 1 is measured in the default scene{self._way_back}")
 
+        self._way_back = ""
         if is_open(self._c, FIGURE_3) or is_open(self._c, FIGURE_4):
             self._begin(default_scene(), Part(lambda c: c.runs.current is not None, measure))
         else:

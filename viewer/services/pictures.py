@@ -117,8 +117,8 @@ class Pictures:
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
         words = commands.words(state, self._session.scene, name, self._loader.folders)
         line = shell_line(["shadowcull", *words])
-        why, forgets = state.warmup.unknown, " (Backspace forgets them)"
-        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {line}")
+        why = state.warmup.unknown
+        self._notices.say(f"copied, but the picture may differ: {why}" if why else f"copied: {line}")
         return line
 
     # --- as a file of its own -----------------------------------------------------------------------

@@ -97,7 +97,8 @@ class Tour:
 
     def back(self) -> None:
         """Go back to the step before, which is to be done once more."""
-        self._c.selection.clear()  # what was clicked for it
+        self._c.selection.clear()  # what was done for it
+        self._c.session.set_draw(view=View.COLOR)
         if self.step is not None:
             self._go_to(STEPS[max(STEPS.index(self.step) - 1, 0)])
 
@@ -327,7 +328,7 @@ STEPS = (
     Step(
         "What next",
         "Fly with {Fly forward}, {Fly left}, {Fly back} and {Fly right}, and look around by dragging. Open another "
-        "scene ({Open...}), let Hunt find wrong pixels in it, or repeat the paper's",
+        "scene ({Open...}), let Hunt find wrong pixels in it, or repeat the paper's results:",
         commands=("Table 1", "Figure 4"),
     ),
 )  # fmt: skip

@@ -29,7 +29,7 @@ _NAMED = {
     "ERROR": ("FF786B", "BE2416"),
     "TEAL": ("4FD1C5", "0B7F77"),  # these six are of curves, and none is near a mode's
     "VIOLET": ("B18CFF", "6A3FC4"),
-    "WHITE": ("E8EAEE", "22262C"),
+    "CONTRAST": ("E8EAEE", "22262C"),
     "TAN": ("C8A27A", "8A5A2B"),
     "ROSE": ("FF8FA3", "C2334D"),
     "LIME": ("A8D672", "4F7F1F"),
@@ -42,7 +42,7 @@ _NAMED = {
 }
 _COLORS = {name: rgb(dark) for name, (dark, _) in _NAMED.items()}
 (
-    BACKGROUND, QUIET, WARNING, ERROR, TEAL, VIOLET, WHITE, TAN, ROSE, LIME, GREY, MARK,
+    BACKGROUND, QUIET, WARNING, ERROR, TEAL, VIOLET, CONTRAST, TAN, ROSE, LIME, GREY, MARK,
     PLOT, GRID, AXIS_TEXT, TITLE,
 ) = _COLORS.values()  # fmt: skip
 ON_PICTURE_ERROR = rgb(_NAMED["ERROR"][0])

@@ -15,7 +15,7 @@ from tracer.culling.modes import OcclusionMode, occlusion_mode
 from tracer.experiments import zoom
 from viewer.services.runs import RecordedZoomTest
 from viewer.state.views import View
-from viewer.util.resources import embedded_scenes
+from viewer.util.resources import default_scene, embedded_scenes
 from viewer.window.ui import Dialog
 
 
@@ -235,4 +235,5 @@ def figures(d: Driver) -> None:
     assert hidden is OcclusionMode.FULLY_RENDERED, "the card that is hidden on its left is taken for whole"
     d.open(embedded_scenes()["figure4"])
     assert not d.c.session.state.pace.fixed_size, "another scene has the window's size"
-    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 0, "a frame")
+    d.choose("Run/Table 1").wait(lambda: runs.experiment is not None and runs.experiment.traced > 0, "a frame", 60.0)
+    assert d.c.session.scene.path == default_scene(), "a scene that shows something in it"

@@ -31,8 +31,8 @@ def keyboard(printed: dict[int, str]) -> Keyboard:
     ("key", "asked", "label"),
     [
         ("W", KEY.z, "Z"), ("D", KEY.d, "D"), ("M", KEY.comma, ","), ("1", KEY._1, "1"), ("F5", KEY.f5, "F5"),
-        ("Shift+A", KEY.mod_shift | KEY.q, "Shift+Q"), ("LeftArrow", KEY.left_arrow, "Left"),
-        ("Keypad7", KEY.keypad7, "Keypad 7"), ("Ctrl+Z", KEY.mod_ctrl | KEY.z, "Ctrl+Z"),
+        ("Shift+A", int(KEY.mod_shift) | int(KEY.q), "Shift+Q"), ("LeftArrow", KEY.left_arrow, "Left"),
+        ("Keypad7", KEY.keypad7, "Keypad 7"), ("Ctrl+Z", int(KEY.mod_ctrl) | int(KEY.z), "Ctrl+Z"),
     ],
 )  # fmt: skip
 def test_places_are_asked_for_by_what_is_printed_there_and_letters_as_they_are(key: str, asked: int, label: str):

@@ -59,7 +59,7 @@ def run(traced: int, label: str) -> SimpleNamespace:
          "compiling the kernels of other methods (first start only): 50 %"),
         (doing, {"warm_up_job": KERNELS, "frame": FRAME}, "loading the kernels of other methods: 50 %"),
         (doing, {"runs": run(0, "starting")}, "experiment: starting   (Escape stops it)"),
-        (doing, {"runs": run(1, "frame 1 of 5, none")}, "experiment, traced: frame 1 of 5, none   (Escape stops it)"),
+        (doing, {"runs": run(1, "frame 1 of 5, none")}, "experiment: frame 1 of 5, none is traced   (Escape stops it)"),
         (doing, {"activity": Activity.CERTIFYING, "frame": FRAME},
          "making certificates (cells settled in the last picture: 1)"),
         (doing, {}, "idle"),

@@ -116,7 +116,7 @@ def _open_points(points, answers, light, radius, start, end, count):
         px, py, pz = load_three(points.position, v)
         gx, gy, gz = load_three(points.geometric, v)
         x, y, z = light[0] - px, light[1] - py, light[2] - pz
-        scratch = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
-        answers.open[v] = bits_of(gx * x + gy * y + gz * z > -scratch) & lanes_below(count, v)
+        slack = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
+        answers.open[v] = bits_of(gx * x + gy * y + gz * z > -slack) & lanes_below(count, v)
         some += answers.open[v] != 0
     return some

@@ -177,7 +177,7 @@ class CubeMaker:
         if n:
             for_each_chunk(find_radii, len(lights), threads, cancel)
             for_each_chunk(divide, FACES * len(lights), threads, cancel)
-        kept = [k for k in range(len(lights)) if taken[k] <= most]
+        kept = [k for k in range(len(lights)) if taken[k] <= most and (not n or None not in faces[k])]
         self.steps += int(states[kept, :, LOOKED_AT].sum())
         self.tests += int(states[kept, :, LOOKED_FOR].sum())
         made: list[Cube | None] = [None] * len(lights)

@@ -139,7 +139,9 @@ def _why(ui: Ui, pick: Pick, unit: int, frame: Frame, scene: Scene, wrong: int) 
         if imgui.small_button("List its rays"):
             rays.show_rays(ui)
     elif wrong and frame.settings.samples > 1 and not any(one.wrong for one in found.reasons):
-        paragraph("Below is the first sample, which is right. The wrong ones are beside it: come nearer.", ERROR)
+        paragraph(
+            "Other samples of this pixel are wrong; below is the first, which is right. Fly nearer to see them.", ERROR
+        )
     told = False  # what hides the primitive
     chosen = _first_light(ui, found)
     if chosen is not None:

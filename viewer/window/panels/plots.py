@@ -18,7 +18,7 @@ from viewer.services.runs import Experiment
 from viewer.state import terms
 from viewer.state.palette import FATES, LIT, PARTLY_LIT
 from viewer.util.numbers import whole_percent
-from viewer.window.style import GREY, LIME, ROSE, TAN, TEAL, VIOLET, WHITE
+from viewer.window.style import CONTRAST, GREY, LIME, ROSE, TAN, TEAL, VIOLET
 from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, checkbox, clipped, count, em, paragraph, tooltip, tooltip_at, width_of
 
@@ -44,7 +44,7 @@ _PLOTS = (
           (("due", "samples_due", GREY), ("reaching", "samples_reached", ImVec4(*LIT, 1.0)),
            ("penumbra", "penumbra", ImVec4(*PARTLY_LIT, 1.0))), only_if="samples_due"),
     _Plot("Steps and tests",
-          (("steps", "steps", WHITE), ("for shadows", "shadow_steps", TAN), ("tests", "tests", VIOLET))),
+          (("steps", "steps", CONTRAST), ("for shadows", "shadow_steps", TAN), ("tests", "tests", VIOLET))),
     _Plot("Milliseconds", (("tracing", "traced_ms", TEAL), ("drawing", "drawn_ms", LIME)), logarithmic=True,
           per_pixel=False),
     _Plot("Tree built, %", ((terms.BUILT, "built", TEAL),), per_pixel=False, only_if="built"),
@@ -57,7 +57,7 @@ _LOW, _LEGEND_SQUARE = 9.0, 1.6  # ems of height of a low plot, and of width bes
 FLAGS = int(implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_mouse_text)
 AXIS = int(implot.AxisFlags_.no_highlight)
 LEGEND = int(implot.LegendFlags_.outside | implot.LegendFlags_.no_menus)
-COLORS = (TEAL, VIOLET, WHITE, TAN, ROSE, LIME)
+COLORS = (TEAL, VIOLET, CONTRAST, TAN, ROSE, LIME)
 _PER_PIXEL = (
     "Counts are divided by pixels, as pictures differ in size, and in motion only some pixels are shaded: those of "
     "primary rays and certificates by all pixels, others by the shaded ones."

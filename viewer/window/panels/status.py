@@ -103,7 +103,7 @@ def doing(c: Controller) -> str:
     if loading is not None:
         return f"{loading.title}{f': {loading.label}' if loading.label else ''}   (Escape cancels)"
     if run is not None:
-        return f"{run.name}{', traced' if run.traced else ''}: {run.label}   (Escape stops it)"
+        return f"{run.name}: {run.label}{' is traced' if run.traced else ''}   (Escape stops it)"
     if preparing is not None:
         does, when = ("compiling", " (first start only)") if c.loader.compiles else ("loading", "")
         return f"{does} the kernels of other methods{when}: {100.0 * preparing.fraction:.0f} %"

@@ -30,9 +30,9 @@ def show(ui: Ui) -> None:
     test, parts = ui.controller.runs.zoom_test, list[Part]()
     if test is not None and (results := test.results) is not None:
         approaches = [approach for approach in results.approaches if approach.steps]
-        parts.append(("Plot", _PLOT, lambda: _plot(ui, test, approaches)))
-        parts.append(("Pictures", _FILMS, lambda: _films(ui, test, approaches)))
         parts.append(("Table", _TABLE, lambda: _table(ui, results)))
+        parts.append(("Pictures", _FILMS, lambda: _films(ui, test, approaches)))
+        parts.append(("Plot", _PLOT, lambda: _plot(ui, test, approaches)))
     show_run(
         ui, test, lambda: _plan(ui), ui.controller.runs.start_zoom_test,
         tip="Move towards the primitive, once with each factor",
