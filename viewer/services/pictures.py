@@ -12,7 +12,7 @@ from tracer.renderer import Renderer
 from tracer.scene.model import Scene
 from tracer.util.text import shell_line
 from viewer.output import capture, commands, exr, other_programs
-from viewer.output.commands import chance, needs_history
+from viewer.output.commands import CHANCE, chance, needs_history
 from viewer.services import stills
 from viewer.services.capture_service import CaptureService
 from viewer.services.frame_scheduler import FrameScheduler
@@ -117,8 +117,8 @@ class Pictures:
         name = f"{Path(state.scene).stem}-{state.draw.view.value}-{self._session.frame:04d}.png"
         words = commands.words(state, self._session.scene, name, self._loader.folders)
         line = shell_line(["shadowcull", *words])
-        why = state.warmup.unknown
-        self._notices.say(f"copied, but the picture may differ: {why}" if why else f"copied: {line}")
+        why, forgets = state.warmup.unknown, " (Backspace forgets them)" if state.warmup.unknown != CHANCE else ""
+        self._notices.say(f"copied, but the picture may differ: {why}{forgets}" if why else f"copied: {line}")
         return line
 
     # --- as a file of its own -----------------------------------------------------------------------
