@@ -55,15 +55,13 @@ def compiled(folder: Path, level: str) -> str:
     """Compile into a folder for a level, or for this processor where that is ""; returns the tiny picture's digest.
 
     Raises CalledProcessError."""
-    left_out = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")
-    environment = {name: value for name, value in os.environ.items() if name not in left_out}
+    chosen = prebuilt.environment_of(level)
+    environment = {name: value for name, value in os.environ.items() if name not in chosen}
     environment |= {"SHADOWCULL_CACHE_DIR": str(folder), "PYTHONPATH": str(ROOT)}
-    if level:
-        environment |= {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": ""}
-    if level:
-        drawing = "from viewer.views import paint; paint.make_ready()"
-        subprocess.run([sys.executable, "-c", drawing], env=environment, check=True)
-    command = [sys.executable, "-m", prebuilt.TRIAL, *(["all"] if level else [])]
+    environment |= chosen if level else {}
+    drawing = "from viewer.views import paint; paint.make_ready()"
+    subprocess.run([sys.executable, "-c", drawing], env=environment, check=True)
+    command = [sys.executable, "-m", prebuilt.TRIAL, "all"]
     return subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
 
 

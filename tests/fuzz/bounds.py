@@ -213,17 +213,17 @@ def run_poisoned(seconds: float, seed: int) -> int:
         told = []
         for more in ({}, POISON):
             command = [sys.executable, "-m", "tests.fuzz.bounds", "--from", str(number), "--count", str(TOGETHER)]
-            done = subprocess.run(
-                [*command, "--until", "inf"], cwd=ROOT, env=os.environ | more, capture_output=True, text=True
-            )
+            command += ["--until", "inf"]
+            done = subprocess.run(command, cwd=ROOT, env=os.environ | more, capture_output=True, text=True)
             told.append([line for line in done.stdout.splitlines() if line.startswith(SETTLED)])
         clean, poisoned = told
-        for k in range(min(map(len, told))):
+        both = min(len(clean), len(poisoned))
+        for k in range(both):
             if clean[k] != poisoned[k]:
                 differ += 1
                 print(f"case {number + k} traces something else where memory is poisoned", flush=True)
-        number += min(map(len, told))
-        if min(map(len, told)) < TOGETHER:  # the next case ended a process, with or without poison
+        number += both
+        if both < TOGETHER:  # the next case ended a process, with or without poison
             differ += 1
             print(f"case {number}: ended after {len(clean)} cases, poisoned after {len(poisoned)}", flush=True)
             number += 1

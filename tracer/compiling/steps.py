@@ -109,7 +109,7 @@ def _queries(accelerator: str) -> Iterator[str]:
 
 def _trees(lights: int, accelerator: str) -> Iterator[str]:
     yield from _smoothing()
-    _builders(accelerator, _renderer(lights, accelerator))
+    _builders(lights, accelerator)
 
 
 def _smoothing() -> Iterator[str]:
@@ -120,8 +120,7 @@ def _smoothing() -> Iterator[str]:
 
 def _frame(lights: int, accelerator: str) -> Iterator[str]:
     yield "the builder"
-    renderer = _renderer(lights, accelerator)
-    _builders(accelerator, renderer)
+    renderer = _builders(lights, accelerator)
     frame = renderer.begin(0.0, progressive=True)
     frame.place_objects_and_lights()
     for name, phase in (
@@ -136,11 +135,11 @@ def _frame(lights: int, accelerator: str) -> Iterator[str]:
         phase()
 
 
-def _builders(accelerator: str, renderer: Renderer) -> None:
-    """What only large scenes need, and what tells how much is built, if the structure has any."""
-    with_more = getattr(STRUCTURES[accelerator], "make_ready", None)
-    if with_more is not None:
-        with_more()
+def _builders(lights: int, accelerator: str) -> Renderer:
+    """A renderer, for which trees are built, and what only those of large scenes need, if the structure has any."""
+    if (make_ready := getattr(STRUCTURES[accelerator], "make_ready", None)) is not None:
+        make_ready()
+    return _renderer(lights, accelerator)
 
 
 def method_steps(lights: int, accelerator: str) -> Iterator[str]:

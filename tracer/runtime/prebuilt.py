@@ -81,7 +81,7 @@ def use() -> None:
         return
     level = taken_into(wanted_root())
     if level:
-        os.environ |= _environment(level)  # of processes that compile as well
+        os.environ |= environment_of(level)  # of processes that compile as well
 
 
 def taken_into(root: Path) -> str:
@@ -106,7 +106,8 @@ def taken_into(root: Path) -> str:
     return ""
 
 
-def _environment(level: str) -> dict[str, str]:
+def environment_of(level: str) -> dict[str, str]:
+    """Return the variables by which numba makes code for a level."""
     return {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": ""}
 
 
@@ -140,7 +141,7 @@ def _take(folder: Path, files: dict[str, str], answer: str, root: Path, level: s
             path.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(folder / name, path)
         modules = os.pathsep.join([str(_ROOT), *filter(None, sys.path)])
-        environment = os.environ | _environment(level) | {"SHADOWCULL_CACHE_DIR": kept, "PYTHONPATH": modules}
+        environment = os.environ | environment_of(level) | {"SHADOWCULL_CACHE_DIR": kept, "PYTHONPATH": modules}
         if digests(made) != files:
             raise ValueError("files are damaged")
         command = [sys.executable, "-P", "-m", TRIAL]
