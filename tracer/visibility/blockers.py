@@ -185,6 +185,6 @@ def that_hide(blockers, group, lights, region):
     # farther.
     further = np.float32(1.25) * away
     f = factors(t.first, t.second, maximum(t.first, t.second), t.across, further, highest, ZERO)
-    hit = t.sane & surely_hit(Functions(u, v, w, b - by_b), bounds(f, longest, near, along, coordinates))
+    hit = t.in_range & surely_hit(Functions(u, v, w, b - by_b), bounds(f, f32x16(longest), near, along, coordinates))
     hit = hit & (height > t.unsure * (further / t.away)) & (height > _LAMP * along)
     return bits_of(hit & (f32x16(longest) < np.float32(blockers.longest)))

@@ -87,7 +87,7 @@ def _over(t, shaft):
         us, vs, ws, bs, ds = _both(us, f.u), _both(vs, f.v), _both(ws, f.w), _both(bs, f.b), _both(ds, d)
         near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
         coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
-    along, longest, f = maximum(ds[1], -ds[0]), np.float32(shaft.longest[0]), factors_of(t)
+    along, longest, f = maximum(ds[1], -ds[0]), f32x16(np.float32(shaft.longest[0])), factors_of(t)
     of_d = longest * (f.d + np.float32(2 * SURPLUS) * t.blur * (t.first + t.second)) + SMALL
     least, most = Functions(us[0], vs[0], ws[0], bs[0]), Functions(us[1], vs[1], ws[1], bs[1])
     return _Extremes(least, most, ds, along, bounds(f, longest, near, along, coordinates), of_d)
@@ -97,11 +97,11 @@ def _over(t, shaft):
 def _parting(x, y, low, high):
     """Narrow the range of factors for which x + factor y is negative by one more corner.
 
-    x and y are two functions there, error bounds added to both."""
+    x and y are two functions there, error bounds added to both; the range is empty where either is NaN."""
     ratio = -x / y
     low = maximum(low, select(y < ZERO, ratio, ZERO))
     high = minimum(high, select(y > ZERO, ratio, HUGE))
-    return low, select((x >= ZERO) & (y >= ZERO), -ONE, high)
+    return low, select((x < ZERO) & (y == y) | (y < ZERO) & (x == x), high, -ONE)
 
 
 @inlined
@@ -160,12 +160,12 @@ def classify_for_prism(question, numbers):
     # Where the light lies in a triangle's plane, as far as float32 can tell, D may have either sign: try both.
     of_d = m.b + m.w
     backwards = (least.u > m.u) | (least.v > m.v) | (least.w > m.w) | (over.d[0] > of_d)
-    missed = missed | (t.sane & (beside(most, m) | (over.d[1] < -of_d)) & backwards)
+    missed = missed | (t.in_range & (beside(most, m) | (over.d[1] < -of_d)) & backwards)
 
     # Or a plane or box parts the triangle from the shaft.
     depth = maximum(select(t.firm, t.height - m.b, ZERO), maximum(over.d[0], -over.d[1]) - over.of_d)
     low, high = grown(row[BOX:ROW], np.float32(REPORTED) * t.away)
-    missed = missed | (t.sane & _before_planes(t, m, depth, light, shaft)) | box_outside(shaft, low, high)
+    missed = missed | (t.in_range & _before_planes(t, m, depth, light, shaft)) | box_outside(shaft, low, high)
 
     # Or, which takes longest, a plane through one of the triangle's edges does.
     if any_lane(t.firm & ~missed & ~hit):

@@ -28,13 +28,14 @@ BLUR, BOX, ROW = 9, 10, 16
 REPORTED = 4e-5  # more than 3 of the kd-tree's 1e-5, turned, by objects whose axes differ by a tenth in length
 LANES = 16  # rows that are looked at together
 SMALL, LARGE = np.float32(1e-30), np.float32(1e12)  # volumes and lengths outside of which float32 may lose more
+_UNKNOWN = np.float32(np.inf)
 
 ZERO, HALF, ONE, TWO, THREE, FOUR, FIVE, EIGHT, NINE = (np.float32(k) for k in (0, 0.5, 1, 2, 3, 4, 5, 8, 9))
 _EPSILON, _SURPLUS, _TWICE = np.float32(EPSILON), np.float32(SURPLUS), np.float32(2 * SURPLUS)
 LARGER = np.float32(2 * SURPLUS * (ENLARGED + 7 * EPSILON))
 _INSIDE = np.float32(INSIDE)
 _WIDE, _ROUNDED = np.float32(2 * REPORTED), np.float32(1e-6)
-_FIRM, _FIRM_BLUR = np.float32(44 * EPSILON), np.float32(1.25)
+_T = np.float32(44 * EPSILON)
 
 
 class SeenTriangles(NamedTuple):
@@ -51,7 +52,7 @@ class SeenTriangles(NamedTuple):
         unsure: by how much T must differ from 0 for its sign to be certain.
         blur: how far the corners may be elsewhere.
         firm: whether the sign of T is certain.
-        sane: whether float32 can tell anything at all.
+        in_range: whether float32 can tell anything at all.
     """
 
     corner: Any
@@ -71,7 +72,7 @@ class SeenTriangles(NamedTuple):
     unsure: Any
     blur: Any
     firm: Any
-    sane: Any
+    in_range: Any
 
 
 class SureHitLength(NamedTuple):
@@ -172,14 +173,15 @@ def rows_at(rows, numbers):
 def unsure_of_t(away, first, second, blur):
     """By how much T must differ from 0 for its sign to be certain, of a light no more than `away` from a triangle's
     corner; lengths of its edges, and how far its corners may be elsewhere."""
-    return away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second + SMALL
+    tilted = TWO * blur * (first + second + TWO * blur)  # by how much the normal may differ
+    return _SURPLUS * ((away + blur) * tilted + blur * first * second) + _T * away * first * second + SMALL
 
 
 @inlined
 def seen_from(light, radius, row):
     """Sixteen triangles, columns of their rows, as a lamp sees them, whose samples lie in a ball around light (3,).
 
-    The height is the least of any point of the ball, distances are the greatest; firm and sane hold for all of them."""
+    The height is the least of any point of the ball, distances are the greatest; firm and in_range hold for all of them."""
     e1, e2, blur = row[3:6], row[6:9], row[BLUR]
     s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
     n = cross(e1, e2)
@@ -192,11 +194,11 @@ def seen_from(light, radius, row):
 
     # Is T's sign certain?
     unsure = unsure_of_t(away, first, second, blur)
-    sane = maximum(away, maximum(first, second)) < LARGE
-    firm = sane & (height > unsure)
+    in_range = maximum(away, maximum(first, second)) < LARGE
+    firm = in_range & (height > unsure)
     u, v, d = scaled(cross(e2, s), turned), scaled(cross(s, e1), turned), scaled(n, -turned)
     return SeenTriangles(
-        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, unsure, blur, firm, sane
+        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, unsure, blur, firm, in_range
     )
 
 
@@ -223,7 +225,7 @@ def factors(first, second, longer, across, away, highest, blur):
 
     The light is no more than `away` from their corner, |T| no more than `highest`; corners may be elsewhere by
     `blur`."""
-    blurred, edges = FIVE * blur * longer, _EPSILON * (first * second)
+    blurred, edges = FIVE * blur * (longer + blur), _EPSILON * (first * second)
     u, v = _TWICE * (NINE * _EPSILON * away * second + blurred), _TWICE * (NINE * _EPSILON * away * first + blurred)
     d = _TWICE * (FOUR * edges + FIVE * _EPSILON * across)
     fixed = FOUR * across * (blur + _EPSILON * away) + THREE * _EPSILON * highest
@@ -245,11 +247,19 @@ def bound_of_b(f, longest, near, coordinates):
 
 
 @inlined
+def _if_known(longest):
+    """A length of rays, or infinity where they are so long that float32 may lose more: no bound is exceeded then."""
+    return select(longest < LARGE, longest, _UNKNOWN)
+
+
+@inlined
 def bounds(f, longest, near, along, coordinates):
     """By how much float32 may be wrong about U, V, W and B, our own errors included (`Functions`).
 
     They hold for directions no longer than `longest`, ends no further than `near` from the triangle's corner and with
-    no more than this sum of absolute `coordinates`, and |D| no more than `along`."""
+    no more than this sum of absolute `coordinates`, and |D| no more than `along`.  For longer directions than `LARGE`
+    they are infinite."""
+    longest = _if_known(longest)
     larger, b = LARGER * along + SMALL, bound_of_b(f, longest, near, coordinates)
     return Functions(f.u * longest + larger, f.v * longest + larger, f.w * longest + larger, b)
 
@@ -273,6 +283,7 @@ def row_factors(t, f):
 @inlined
 def row_bounds(u, v, b, longest, near, along, coordinates):
     """Bounds by the factors of a row, no narrower than those of `bounds`."""
+    longest = _if_known(longest)
     larger = LARGER * along + SMALL
     b = b * (OF_NEAR * near + OF_LONGEST * longest + OF_COORDINATES * coordinates) + SMALL
     return Functions(u * longest + larger, v * longest + larger, (u + v) * longest + larger, b)

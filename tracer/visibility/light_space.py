@@ -148,7 +148,7 @@ def verdicts(t, light, direction, end):
     Rays go from light (3,) in a direction to their end, three vectors each; t are the columns of the primitives' rows:
     those of others for each ray (`load_columns`), or the same for all (`load_row`)."""
     hit, missed = judge(t, light, end, None, None)
-    missed, boxed = missed & (size_of(direction) < LARGE), t[FARTHEST] < ZERO
+    boxed = t[FARTHEST] < ZERO
     if any_lane(boxed):
         missed = missed | (boxed & segments_miss_box(light, direction, t[U:V], t[V:D]))
     return bits_of(hit), bits_of(missed)

@@ -76,7 +76,7 @@ def prepare(rows, farthest, lamp, numbers, made):
     store(made + 64 * HEIGHT, t.height)
     store(made + 64 * UNSURE, t.unsure)
     store(made + 64 * SURE, sure_hit_length(farthest, numbers))
-    store(made + 64 * FIRM, select(t.firm, ONE, select(t.sane, ZERO, -ONE)))
+    store(made + 64 * FIRM, select(t.firm, ONE, select(t.in_range, ZERO, -ONE)))
 
     # The box in which hits are reported, with room for rounding.
     low, high = reported_box(t, row)
