@@ -23,7 +23,7 @@ from tracer.simd import address_of, bits_of, f32x16, load_columns, load_three, l
 from tracer.visibility.area_light_tests import KEPT, ask_points
 from tracer.visibility.blockers import find_blockers, hull_of, that_hide
 from tracer.visibility.classify import PrismQuestion, classify_for_prism
-from tracer.visibility.error_bounds import BLUR, BOX, ROW, SureHitLength
+from tracer.visibility.error_bounds import BOX, CORNER_ERROR, ROW, SureHitLength
 from tracer.visibility.light_space import LIGHT_ROW, in_all_lanes, judge, put_light_space, verdicts
 from tracer.visibility.prepared_triangles import PREPARED, Lamp, prepare
 from tracer.visibility.shaft import PrismShaft, make_prism_shaft, put_light
@@ -86,12 +86,12 @@ class Rows(NamedTuple):
     farthest: Any
 
 
-def rows_of(triangle: Vectors, blur: float) -> Vectors:
-    """Sixteen times the row of a triangle (9,) float32, corner and edges, whose corners may be elsewhere by `blur`."""
+def rows_of(triangle: Vectors, corner_error: float) -> Vectors:
+    """Sixteen times the row of a triangle (9,) float32, corner and edges, and what its corners may be wrong by."""
     rows = np.zeros((LANES, ROW), np.float32)
     corners = np.stack([triangle[:3], triangle[:3] + triangle[3:6], triangle[:3] + triangle[6:]])
-    room = 1e-5 * np.abs(corners).max() + blur
-    rows[:, BLUR] = blur
+    room = 1e-5 * np.abs(corners).max() + corner_error
+    rows[:, CORNER_ERROR] = corner_error
     rows[:, :9], rows[:, BOX : BOX + 3], rows[:, BOX + 3 :] = triangle, corners.min(0) - room, corners.max(0) + room
     return rows
 
@@ -161,9 +161,9 @@ def _prism_shaft(hull: Hull) -> PrismShaft:
     return shaft
 
 
-def claim(triangle: Vectors, light: Hull, receiver: Hull, sure: float, blur: float = 0.0) -> set[str]:
+def claim(triangle: Vectors, light: Hull, receiver: Hull, sure: float, corner_error: float = 0.0) -> set[str]:
     """What is claimed of a triangle (9,) and all rays from one hull to another."""
-    claims, rows = np.zeros(2, np.int64), rows_of(triangle, blur)
+    claims, rows = np.zeros(2, np.int64), rows_of(triangle, corner_error)
     ends = np.ascontiguousarray(np.repeat(receiver.middle[:, None], LANES, axis=1), np.float32)
     if light.kind == "box":
         one, other = (
@@ -267,13 +267,14 @@ class Slide(NamedTuple):
     light: Hull
     receiver: Hull
     sure: float
+    corner_error: float = 0.0
 
     def at(self, part: float) -> Vectors:
         corner = self.triangle[:3] + np.float32(part) * self.aside.astype(np.float32)
         return np.concatenate([corner, self.triangle[3:]]).astype(np.float32)
 
     def claims(self, part: float) -> set[str]:
-        return claim(self.at(part), self.light, self.receiver, self.sure)
+        return claim(self.at(part), self.light, self.receiver, self.sure, self.corner_error)
 
     def claimed(self, name: str, part: float) -> bool:
         return name in self.claims(part)
@@ -344,17 +345,18 @@ def test_nothing_false_is_claimed_where_products_of_lengths_overflow() -> None:
 
 @pytest.mark.parametrize("pair", ["point to point", "point to prism", "ball to point"])
 def test_claims_hold_for_all_triangles_whose_corners_are_that_close(pair: str) -> None:
-    """The corners of a resting triangle are somewhere within its blur: a claim holds wherever they are."""
+    """The corners of a resting triangle are somewhere near where they are taken to be: claims hold wherever that is."""
     rng, tried, (a_light, a_receiver) = np.random.default_rng(13), Counter[str](), PAIRS[pair]
     for number in range(cases(30, 600)):
         way, aside = rng.normal(size=(2, 3))
         way, aside = way / np.linalg.norm(way), np.cross(way, aside)
         light = a_light(np.zeros(3), 10.0 ** rng.uniform(-3, -1), rng)
         receiver = a_receiver(4.0 * way, 10.0 ** rng.uniform(-3, -1), rng)
-        size, blur = 10.0 ** rng.uniform(-3, 0.5), 10.0 ** rng.uniform(-6, -2)
-        slide = Slide(_triangle(rng.uniform(0.05, 3.95) * way, way, size, rng), aside, light, receiver, 1e6)
+        size, corner_error = 10.0 ** rng.uniform(-3, 0.5), 10.0 ** rng.uniform(-6, -2)
+        triangle = _triangle(rng.uniform(0.05, 3.95) * way, way, size, rng)
+        slide = Slide(triangle, aside, light, receiver, 1e6, corner_error)
         for claimed, inner, outer in ((HIT, 0.0, 8.0), (MISSED, 8.0, 0.0)):
-            holds = lambda part, name=claimed: name in claim(slide.at(part), light, receiver, 1e6, blur)  # noqa: E731
+            holds = partial(slide.claimed, claimed)
             if not holds(inner):
                 continue
             tried[claimed] += 1
@@ -362,10 +364,10 @@ def test_claims_hold_for_all_triangles_whose_corners_are_that_close(pair: str) -
             corners = np.stack([triangle[:3], triangle[:3] + triangle[3:6], triangle[:3] + triangle[6:]])
             for _ in range(40):
                 moves = rng.normal(size=(3, 3))
-                a, b, c = corners + 0.999 * blur * moves / np.linalg.norm(moves, axis=1, keepdims=True)
+                a, b, c = corners + 0.999 * corner_error * moves / np.linalg.norm(moves, axis=1, keepdims=True)
                 moved = np.concatenate([a, b - a, c - a])
                 for start, end in product(light.extremes[:8], receiver.extremes):
-                    assert crosses(moved, start, end) == (claimed == HIT), (number, claimed, triangle.tolist(), blur)
+                    assert crosses(moved, start, end) == (claimed == HIT), (number, claimed, corner_error)
     assert tried[HIT] > cases(3, 60) and tried[MISSED] > cases(12, 240), tried
 
 

@@ -72,14 +72,14 @@ def put_light_space(rows, farthest, light, light_space):
         sure = minimum(sure_hit_length(farthest, numbers), minimum(t.height / t.across * _PAST, LARGE))
         low, high = reported_box(t, row)
         for axis in range(3):
-            store(columns + 64 * (U + axis), select(t.firm, t.u[axis], low[axis]))
-            store(columns + 64 * (V + axis), select(t.firm, t.v[axis], high[axis]))
+            store(columns + 64 * (U + axis), select(t.sure_side, t.u[axis], low[axis]))
+            store(columns + 64 * (V + axis), select(t.sure_side, t.v[axis], high[axis]))
             store(columns + 64 * (D + axis), t.d[axis])
             store(columns + 64 * (CORNER + axis), t.corner[axis])
         store(columns + 64 * OF_U, of_u)
         store(columns + 64 * OF_V, of_v)
         store(columns + 64 * BEHIND, of_b)
-        store(columns + 64 * FARTHEST, select(t.firm, sure, _NONE))
+        store(columns + 64 * FARTHEST, select(t.sure_side, sure, _NONE))
         for k in range(min(LANES, len(rows) - first)):
             for column in range(LIGHT_ROW):
                 light_space[first + k, column] = made[LANES * column + k]
