@@ -54,11 +54,11 @@ T is only certain where no displaced plane has the light on its other side (`uns
 
 1. Hit, where the side is sure, U-, V- and W- are above 3.5 m and B- above m, and T above LAMP of |D|.  Of the 3.5 m
    one is for the comparisons and one for our own errors.  The rest is for boxes: the structures report a hit only
-   where t lies in a box, or beyond a plane.  The line passes the box, as it passes the triangle; but t is wrong by (4
-   eps |e1| |e2| |X - a| + 11 eps |n| |s|) / D at most, where X is the hit.  *Across* the plane that moves X by no
+   where t lies in a box, or beyond a plane.  The line passes the box, as it passes the triangle; but t is wrong by
+   (4 eps |e1| |e2| |X - a| + 11 eps |n| |s|) / D at most, where X is the hit.  *Across* the plane that moves X by no
    more than 11 eps |s|, and what n adds, for which boxes are padded as long as no ray is longer than `SureHitLength`,
    13 eps of it.  *Along* the plane, the second term moves U by 11 eps |s| |e2| |d|, less than the 1.5 m that are
-   left.  The first is much less than it looks: as (X - a) .  n = 0 before rounding, each of its products has one
+   left.  The first is much less than it looks: as (X - a) . n = 0 before rounding, each of its products has one
    factor for each axis, so that it is small wherever the box is thin.  No proof is given here that this is enough for
    a sliver that is lit from much closer than it is long; sixteen million such hits were tried, and all were reported.
 2. Miss, where one of U+, V+, W+ and B+ is below -m; or where a sum of two functions with positive factors, bounds added
