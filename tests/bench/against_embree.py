@@ -4,14 +4,12 @@
     make bench ARGS="--quick"                                 a first look
     make bench ARGS="--accelerator kdtree --frames 0 robot.aff --views 3"
 
-Embree is the one that embreex's wheel brings along, called by its C interface: single rays and
-packets, with and without its coherent flag, robust off, over one tree of all triangles of the
-moment.  Any hits are asked of shadow rays from the lights; of rays with no direction in common, over the
-hemisphere of what primary rays hit and of one light in random order; and of the very shadow rays that `certified`
-leaves at bounces 0 to 2.  Its best mode is found anew for each kind of rays in each view, and is timed tracing alone:
-packets are filled before the clock starts.  Ours is timed as the call of a `World`, answers allocated
-and all.  Contestants take turns.  Goals that are missed are printed, and no failure; the exit code is 1
-where too many answers are not those of Embree with robust on, or rays are not those of the frames.
+Embree is the one that embreex's wheel brings along, called by its C interface: single rays and packets, with and
+without its coherent flag, robust off, over one tree of all triangles of the moment.  Its best mode is found anew for
+each kind of rays in each view, and is timed tracing alone: packets are filled before the clock starts.  Ours is timed
+as the call of a `World`, answers allocated and all.  Any hits are asked of shadow rays, and of those of `any_hit_rays`.
+Contestants take turns.  Goals that are missed are printed, and no failure; the exit code is 1 where too many answers
+are not those of Embree with robust on, or rays are not those of the frames.
 """
 
 from __future__ import annotations

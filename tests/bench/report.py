@@ -51,11 +51,6 @@ def _ratios(contests: list[Contest]) -> list[float]:
     return [contest.ratio().median for contest in contests]
 
 
-def _over_nearest(contests: list[Contest]) -> list[float]:
-    """The rate of any hits over that of the nearest hits of the same rays."""
-    return [float(np.median(np.array(c.nearest) / np.array(c.ours))) for c in contests if c.nearest]
-
-
 def _gains(contests: list[Contest]) -> list[float]:
     return [gain for c in contests for gain in gains(c.ours, c.two, c.second_core)]
 
@@ -70,7 +65,8 @@ def ray_goals(scene: str, contests: list[Contest]) -> list[Goal]:
         if kind in NEVER_BELOW:
             made.append(Goal(scene, f"{what}: worst view", NEVER_BELOW[kind], min(ratios)))
         if kind in ANY_HITS:
-            made.append(Goal(scene, f"{kind} rays, any hits over nearest hits", 1.0, _median(_over_nearest(of_kind))))
+            gains_by_view = [_median(np.divide(contest.nearest, contest.ours).tolist()) for contest in of_kind]
+            made.append(Goal(scene, f"{kind} rays, any hits over nearest hits", 1.0, _median(gains_by_view)))
     if len(thread_numbers()) > 1:
         made += [
             Goal(scene, f"{kind} rays, two threads over one", TWO_THREADS, _median(_gains(of[kind]))) for kind in of
@@ -139,8 +135,6 @@ def rays_table(scene: str, size: int, contests: list[Contest], kinds: Sequence[s
     row("  by, mostly", lambda cs: Counter(c.opponent for c in cs).most_common(1)[0][0])
     row("ours over Embree's, median of views", lambda cs: f"{_median(_ratios(cs)):.2f}")
     row("  worst and best view", lambda cs: f"{min(_ratios(cs)):.2f} to {max(_ratios(cs)):.2f}")
-    if kinds is ANY_HITS:
-        row("any hits over nearest hits", lambda cs: f"{_median(_over_nearest(cs)):.2f}")
     row("two threads over one", lambda cs: Spread.of(_gains(cs)).text() if _gains(cs) else "no second core")
     row("rays", lambda cs: f"{sum(c.rays for c in cs):,}")
     row("answers that differ", lambda cs: f"{_share(cs, 'differing_strictly'):.4%}")

@@ -1,9 +1,9 @@
 """Whether rays meet anything, one by one, where their directions have nothing in common.
 
 They do share the roots.  So the sixteen rays of a vector are tested together against a root's children, and then each
-ray goes alone below those that it enters, until it is blocked or nothing is left.  What it enters it takes as it comes,
-leaves first: near boxes of rays that start among them are many, and block no more than others.  (For nearest hits see
-`stream`.)
+ray goes alone below those that it enters, until it is blocked or nothing is left.  It takes children as they come, but
+leaves first.  Not the nearest first: rays from surfaces would search through what lies around them, and visit three
+times as many nodes.  (For nearest hits see `stream`.)
 """
 
 from __future__ import annotations
