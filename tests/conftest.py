@@ -7,15 +7,11 @@ import gc
 import os
 import sys
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from viewer.util.screen import has_display, no_display_reason
-
-# For Linux on Arm there is no Embree to be compared with.
-collect_ignore = [] if find_spec("embreex") else ["test_bench_embree.py", "tracing/test_embree.py"]
 
 BART = Path(__file__).resolve().parents[1].parent / "shared" / "bart"
 
