@@ -149,27 +149,6 @@ def test_frames_of_kitchen_are_those_without_a_cache(bart: Path, method: str, ac
     assert shadow.cache_hits > 0.1 * (shadow.rays + shadow.cache_hits)
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_certified_pictures_are_those_without_a_cache(accelerator: str):
-    hits = 0
-
-    @quickly(5)
-    @given(walks(), st.integers(0, 2))
-    def check(walk: Walk, depth: int) -> None:
-        nonlocal hits
-        settings = tracer.Settings(48, 40, depth, "none", threads=2, verify=True, accelerator=accelerator)
-        none = tracer.Renderer(walk.scene, settings)
-        cached = tracer.Renderer(walk.scene, replace(settings, method="certified+cache"))
-        for time, camera in walk.frames:
-            frame = cached.render(time, camera)
-            assert frame.color.tobytes() == none.render(time, camera).color.tobytes()
-            assert frame.statistics.shadow.wrong == 0
-            hits += frame.statistics.shadow.cache_hits
-
-    check()
-    assert hits > 100
-
-
 LIGHT = (0.0, 0.0, 20.0)
 FLOOR = quad((-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0))
 ROOF = quad((-1, -1, 6), (1, -1, 6), (1, 1, 6), (-1, 1, 6))

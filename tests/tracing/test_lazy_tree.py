@@ -15,7 +15,6 @@ from tests.bench.meshes import bumpy_sphere, frequency_for
 from tests.tracing import brute
 from tests.tracing.naive_lazy_tree import LazyTraversal, node_at
 from tests.tracing.naive_tree import Line
-from tests.tracing.nasty_worlds import flattened_walk, nasty_walk
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.same import assert_same
@@ -226,18 +225,3 @@ def test_frames_are_those_of_the_kd_tree_and_the_same_for_any_number_of_threads(
         assert frame.color.tobytes() == eager.render().color.tobytes()
     assert frame.statistics.built is not None and 0.0 < frame.statistics.built.share <= 1.0
     assert eager.render().statistics.built is None and frame.statistics.to_dict()["built"]["of"] == made.primitive_count
-
-
-@pytest.mark.parametrize("method", ["certified+cache", "certified+rest", "auto", "free"])
-def test_exact_methods_give_the_picture_of_none(method: str) -> None:
-    """Of bodies that move, rest, start and stop, flattened and stretched ones, too."""
-    settings, culled = tracer.Settings(24, 24, 2, "none", threads=2, accelerator=LAZY), 0
-    for walk in (nasty_walk(1), nasty_walk(5), flattened_walk(7)):
-        world = tracer.World(walk.scene, walk.frames[0][0], LAZY)
-        none = tracer.Renderer(walk.scene, settings, world=world)
-        other = tracer.Renderer(walk.scene, replace(settings, method=method), world=world)
-        for time, camera in walk.frames:
-            expected, frame = none.render(time, camera), other.render(time, camera)
-            assert frame.color.tobytes() == expected.color.tobytes()
-            culled += frame.statistics.shadow.saved
-    assert culled > 0 or method == "auto"
