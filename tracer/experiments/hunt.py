@@ -36,7 +36,8 @@ MOST_LOOKED_INTO = 12
 """Wrong pixels of one frame whose rays are looked into, at most."""
 _SUFFIXES = (1, 2, 4, 8, 16)  # last frames of a history that are tried alone
 _DRAWS = 12  # places that are tried for one random view, until nothing is in the way there
-_NAMES = ("depth", "symmetric", "zoom_factor", "lamp_radius", "lamp_samples", "accelerator")
+SETTINGS = ("depth", "symmetric", "zoom_factor", "lamp_radius", "lamp_samples", "accelerator")
+"""What findings tell of how they were traced."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ def run(
         settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
     world = world or World(scene, search.times[0], settings.accelerator)
     settings = replace(settings, accelerator=world.accelerator)
-    names = {name: getattr(settings, name) for name in _NAMES}
+    names = {name: getattr(settings, name) for name in SETTINGS}
     results = Results(str(scene.path), settings.method, (settings.width, settings.height), names)
     hunter = _Hunter(scene, search, settings, world, cancel, results)
     try:

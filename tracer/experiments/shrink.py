@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.editing.edits import NEVER as HIDDEN
@@ -128,7 +128,8 @@ def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | N
 def _failed_rule(
     scene: Scene, find: Counterexample, unit: int, renderer: Renderer, frame: Frame, before: Sequence[Frame]
 ) -> str:
-    verdict, method = Verdict(find.verdict), title_of(frame.settings.method)
+    verdict = next(one for one in Verdict if one.value == find.verdict)
+    method = title_of(frame.settings.method)
     if verdict not in (Verdict.FULL_SHADOW, Verdict.NON_SHADOW) or find.taught < 0:
         return f"No rule of the paper failed, but what {method} knew: {MEANING[verdict]}"
     what = f"{kind_of(scene, find.primitive)} {find.primitive}"
@@ -144,21 +145,15 @@ def _failed_rule(
         alone_in = with_primitives(scene, [find.primitive])
         alone = int((Renderer(alone_in, rays).render(then.time, then.camera).primitive == 0).sum())
     if alone > seen > 0:
-        return (
-            f"Occlusion testing (§2.3) failed: {what} covered {seen:,} of its {alone:,} pixels, but nothing was found to "
-            f"hide it, and so it passed for fully rendered. {learnt}; shadow testing (§2.4) trusts that for all of it."
-        )
-    now, highest = int(frame.pixel_count[unit]), int(renderer.highest_before[unit])
+        failed = f"Occlusion testing (§2.3) failed: {what} showed {seen:,} of {alone:,} pixels, but passed for whole"
+        return f"{failed}. {learnt}; shadow testing (§2.4) takes that to hold for all of it."
+    now, highest, factor = int(frame.pixel_count[unit]), int(renderer.highest_before[unit]), frame.settings.zoom_factor
     if now > highest > 0:
-        factor = frame.settings.zoom_factor
-        return (
-            f"Occlusion-mode setting (§2.6) failed: {what} covers {now:,} pixels, {highest:,} when it was examined, and no "
-            f"frame before found it more than {factor:g} times as large. {learnt}; shadow testing (§2.4) still trusts that."
-        )
-    return (
-        f"Shadow-mode setting (§2.5) failed, as it knows {what} by a few rays. {learnt}; shadow testing (§2.4) takes that "
-        "to hold for all of it."
-    )
+        failed = f"Occlusion-mode setting (§2.6) failed: {what} covers {now:,} pixels, {highest:,} when examined, "
+        failed += f"and no frame before has found it more than {factor:g} times as large"
+        return f"{failed}. {learnt}; shadow testing (§2.4) still trusts that."
+    failed = f"Shadow-mode setting (§2.5) failed, as it knows {what} by a few rays"
+    return f"{failed}. {learnt}; shadow testing (§2.4) takes that to hold for all of it."
 
 
 # --- what can be taken away ---------------------------------------------------------------------------
@@ -175,10 +170,10 @@ def bare(scene: Scene) -> Scene:
     return replace(scene, objects=tuple(objects), textures=(), lights=lights)
 
 
-def with_primitives(scene: Scene, kept: ArrayLike) -> Scene:
+def with_primitives(scene: Scene, kept: Sequence[int] | NDArray[np.intp]) -> Scene:
     """Return a scene with some of its primitives; objects that have none are gone."""
     keeps = np.zeros(scene.primitive_count, np.bool_)
-    keeps[kept] = True
+    keeps[np.asarray(kept, np.intp)] = True
     left = [subset(one, keeps[np.concatenate(held_by(scene, index))]) for index, one in enumerate(scene.objects)]
     objects = [left[0], *(one for one in left[1:] if len(one.triangles) or len(one.quadrics))]
     return replace(scene, objects=tuple(objects))
@@ -200,18 +195,20 @@ def with_area(scene: Scene, area: float) -> Scene:
     if missing <= 0.0 or box is None:
         return scene
     middle, radius = ball_of(box)
-    far, side = middle + [_FAR * radius, 0.0, 0.0], np.sqrt(2.0 * missing)
-    corners = (far + side * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]))[None].astype(np.float32)
-    normals = np.tile(np.float32([0.0, 0.0, 1.0]), (1, 3, 1))
+    side = np.sqrt(2.0 * missing)
+    edges = np.array([[0.0, 0.0, 0.0], [side, 0.0, 0.0], [0.0, side, 0.0]])
+    corners = (np.add(middle, (_FAR * radius, 0.0, 0.0)) + edges)[None].astype(np.float32)
+    normals = np.tile(np.array([0.0, 0.0, 1.0], np.float32), (1, 3, 1))
     number = np.zeros(1, np.int32)
     one = Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
-    rows = {f.name: np.concatenate([getattr(static.triangles, f.name), getattr(one, f.name)]) for f in fields(Triangles)}
-    triangles = Triangles(**rows)
+    both = (static.triangles, one)
+    triangles = Triangles(**{f.name: np.concatenate([getattr(t, f.name) for t in both]) for f in fields(Triangles)})
     parts, part_of = static.parts, static.part_of
     if part_of is not None:
         part_of = np.insert(part_of, len(static.triangles), len(parts)).astype(np.int32)
         parts = (*parts, "area_left_out")
-    return replace(scene, objects=(replace(static, triangles=triangles, parts=parts, part_of=part_of), *scene.objects[1:]))
+    static = replace(static, triangles=triangles, parts=parts, part_of=part_of)
+    return replace(scene, objects=(static, *scene.objects[1:]))
 
 
 def _far_ones_first(scene: Scene, traced: Scene, wrong: WrongPixel, cancel: Cancel) -> NDArray[np.intp]:
@@ -241,9 +238,7 @@ KINDS = ("frames", "lights", "objects", "primitives")
 """What can be taken away, in the order in which it is tried: first what makes further tries quick."""
 
 
-def _parts(
-    kind: str, scene: Scene, wrong: WrongPixel, traced: Callable[[Scene], Scene], cancel: Cancel
-) -> list[Any]:
+def _parts(kind: str, scene: Scene, wrong: WrongPixel, traced: Callable[[Scene], Scene], cancel: Cancel) -> list[Any]:
     """What there is of a kind, each as `_only` takes it; what is needed least comes first."""
     if kind == "frames":
         return list(wrong.before)
@@ -290,13 +285,15 @@ class Shrink(Run[Shrunk]):
         scene = bare(scene)
         self._sign = np.sign(error(scene, wrong, cancel))
         if not self._sign:
+            here = f"pixel {wrong.x},{wrong.y} is not wrong"
             after = f"after {len(frames)} frame{'s' * (len(frames) != 1)}"
-            raise ValueError(f"pixel {wrong.x},{wrong.y} is not wrong: {settings.method}, {after}, traces it as none does")
+            raise ValueError(f"{here}: by {settings.method}, {after}, no shadow answer is wrong there that can be seen")
         now = Shrunk(scene, wrong, Counts(scene.primitive_count, len(scene.lights), len(frames)), 1)
         yield now
         if Method.parse(settings.method).uses_cells:
             area = static_area(scene)
-            for now in self._until_all_is_needed(now, lambda scene: with_area(scene, area), cancel):
+            for smaller in self._until_all_is_needed(now, lambda scene: with_area(scene, area), cancel):
+                now = smaller
                 yield replace(now, scene=with_area(now.scene, area))
             now = replace(now, scene=with_area(now.scene, area))
         yield from self._until_all_is_needed(now, lambda scene: scene, cancel)
@@ -316,9 +313,7 @@ class Shrink(Run[Shrunk]):
                     yield now
                 done.add(kind)
 
-    def _without(
-        self, kind: str, begin: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel
-    ) -> Iterator[Shrunk]:
+    def _without(self, kind: str, begin: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:
         """Leave out what is not needed of a kind; gives what is left whenever that is less, and at last."""
         now, parts = begin, _parts(kind, begin.scene, begin.wrong, traced, cancel)
 

@@ -56,8 +56,8 @@ def _numbers(values: ArrayLike) -> str:
 
 def _tracks(name: str, tracks: TrackSet) -> list[str]:
     lines = [f"k {name} {{"]
-    kinds: list[tuple[str, Keys | None]] = [("transl", tracks.translation), ("rot", tracks.rotation), ("scale", tracks.scale)]
-    for kind, keys in kinds:
+    kinds: dict[str, Keys | None] = {"transl": tracks.translation, "rot": tracks.rotation, "scale": tracks.scale}
+    for kind, keys in kinds.items():
         if keys is not None:
             lines.append(f"{kind} {len(keys.times)}")
             lines += map(_numbers, np.column_stack([keys.times, keys.values, keys.shape]))
@@ -107,7 +107,9 @@ def _turn(rotation: Float64) -> str:
     """The axis of a rotation (3, 3), and its angle in degrees."""
     skew = (rotation - rotation.T) / 2.0
     sines = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
-    axis = sines if np.trace(rotation) > 0.0 else np.linalg.eigh(rotation + rotation.T)[1][:, 2]  # near 180 no sine is left
+    axis = sines
+    if np.trace(rotation) < 0.0:  # near 180 degrees, sines say little
+        axis = np.linalg.eigh(rotation + rotation.T)[1][:, 2]
     axis = axis / max(float(np.linalg.norm(axis)), 1e-300)
     angle = np.degrees(np.arctan2(sines @ axis, (np.trace(rotation) - 1.0) / 2.0))
     return f"{_numbers(axis)} {_numbers(angle)}"
@@ -140,9 +142,9 @@ def _geometry(scene: Scene, one: SceneObject, tracks: set[str]) -> Iterator[str]
 def _triangle(one: SceneObject, place: int) -> list[str]:
     deformation = one.deformation
     if deformation is not None:
-        times, corners, normals = (a[place] for a in (deformation.times, deformation.corners, deformation.normals))
-        keys = np.stack([corners, normals], axis=2)  # (keys, 3, 2, 3)
-        return [f"tpa {len(times)}", *(f"{_numbers(time)} {_numbers(key)}" for time, key in zip(times, keys, strict=True))]
+        times = deformation.times[place]
+        keys = np.stack([deformation.corners[place], deformation.normals[place]], axis=2)  # (keys, 3, 2, 3)
+        return [f"tpa {len(times)}", *(f"{time} {_numbers(key)}" for time, key in zip(times, keys, strict=True))]
     corners, normals = one.triangles.corners[place], one.triangles.normals[place]
     flat: NDArray[np.float32] = geometric_normals(corners[None])[0].astype(np.float32)
     if (normals == flat).all():

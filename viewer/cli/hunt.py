@@ -20,8 +20,8 @@ from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import Work, listed, print_table, working
 from viewer.output import exports
-from viewer.output.reports import findings
 from viewer.output.findings import comparison_of, save_json
+from viewer.output.reports import findings
 from viewer.services import stills
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import HuntPlan

@@ -36,6 +36,7 @@ COMMANDS = {
     "zoom": ("SCENE", "move towards a primitive, and see whether its shadows stay right"),
     "explain": ("SCENE", "say what became of each ray of one pixel"),
     "hunt": ("SCENE", "search a path for the worst wrong pixels of a method"),
+    "shrink": ("SCENE", "reduce a wrong pixel to the few triangles, lights and frames that it takes"),
     "figure": ("SCENE", "draw a frame by several methods side by side"),
     "check": ("FILE", "render saved pictures and figures again, and say whether they are still true"),
     "info": ("SCENE", "say what a scene holds"),

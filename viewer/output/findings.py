@@ -36,7 +36,7 @@ def comparison_of(
 
 
 def save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: ViewState, path: Path) -> None:
-    """Write all about a counterexample, whose picture has this state, with the commands that explain it and that shrink it.
+    """Write all about a counterexample, whose picture has this state, and the commands that explain and shrink it.
 
     Raises OSError in one line."""
     words = [commands.scene_word(Path(state.scene)), *commands.options(replace(state, warmup=Warmup()))]
