@@ -6,11 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 from tracer.experiments import counterexample
 from tracer.experiments.hunt import SETTINGS, Results
 from tracer.experiments.shrink import Shrink, Shrunk, WrongPixel, explained
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.geometry.world import World
 from tracer.method import title_of
 from tracer.scene.aff_writer import aff_text
@@ -19,6 +21,13 @@ from tracer.scene.mesh_options import AS_IN_FILE
 from tracer.scene.model import Cancelled, Scene
 from viewer.output.findings import comparison_of, save_json
 from viewer.services import stills
+from viewer.services.history import FrameHistory
+from viewer.services.inspector import Selection
+from viewer.services.render_request import Traced
+from viewer.services.runs import Runs
+from viewer.state.picking import wrong_at
+from viewer.state.preferences import Preferences
+from viewer.state.session import Session
 from viewer.util.files import write_text
 
 SCENE, FRAMES, FIGURE, TEST = "scene.aff", "wrong.json", "wrong.png", "test_wrong.py"
@@ -97,6 +106,50 @@ def write(shrunk: Shrunk, folder: Path) -> str:
     words = f"By {title_of(wrong.settings.method)}: {' '.join(counterexample.in_words(find, scene))}"
     write_text(folder / TEST, _TEST.format(words=words, rule=rule, frames=FRAMES, scene=SCENE))
     return rule
+
+
+class Shrinking:
+    """Shrinks wrong pixels of the window: that which is selected, or a finding of the hunt."""
+
+    def __init__(
+        self, session: Session, preferences: Preferences, runs: Runs, history: FrameHistory, selection: Selection,
+        newest: Callable[[], Traced | None],
+    ) -> None:  # fmt: skip
+        """`newest` returns the newest picture, None while it is that of a run."""
+        self._session, self._preferences, self._runs = session, preferences, runs
+        self._history, self._selection, self._newest = history, selection, newest
+
+    @property
+    def offers(self) -> bool:
+        """Whether a wrong pixel is selected."""
+        traced, pixel = self._newest(), self._selection.pixel
+        return traced is not None and pixel is not None and bool(wrong_at(traced.frame, *pixel))
+
+    def start(self) -> None:
+        """Begin to shrink the pixel that is selected, after the frames that were traced before it in this size."""
+
+        def make(scene: Scene) -> ShrinkRun:
+            traced, pixel = self._newest(), self._selection.pixel
+            if traced is None or pixel is None or not self.offers:
+                raise ValueError("click a wrong pixel first; Verify finds them")
+            frame, asked, (x, y) = traced.frame, traced.request.warmup, pixel
+            before = self._history.before(frame) if asked is None else tuple(WarmupFrame(*one) for one in asked)
+            return self._run(scene, WrongPixel(x, y, frame.time, frame.camera, before, frame.settings))
+
+        self._runs.start(make)
+
+    def start_find(self, number: int) -> None:
+        """Begin to shrink a finding of the hunt."""
+        hunt = self._runs.hunt
+        if hunt is None or hunt.results is None or not self._runs.allows(hunt):
+            return
+        find, settings = hunt.results.finds[number], hunt.settings
+        wrong = WrongPixel(find.x, find.y, find.time, find.seen_camera, find.before, settings)
+        self._runs.start(lambda scene: self._run(scene, wrong))
+
+    def _run(self, scene: Scene, wrong: WrongPixel) -> ShrinkRun:
+        name = f"{scene.path.stem}-shrunk-{datetime.now():%Y-%m-%d-%H-%M-%S}"
+        return ShrinkRun(scene, wrong, self._preferences.picture_folder / name)
 
 
 def _check_folder(folder: Path) -> None:
