@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first dist kernel-wheel docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
+.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first first-start dist kernel-wheel docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -128,6 +128,10 @@ growth:  ## measure how the cost of a ray grows from 10,000 to 2,000,000 triangl
 first:  ## measure how soon a scene shows its first picture and a close-up, by each structure (ARGS="--triangles 200000 SCENE")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.first_pictures $(ARGS)
+
+first-start:  ## measure the window's very first start: with nothing compiled, and with the wheel of kernels in dist
+	@tools/environment.sh dev
+	@$(RUN) tools/with_screen.py $(RUN) -m tests.bench.window_times --first-start $(ARGS)
 
 dist:  ## build the wheel and the source distribution, and check them (ARGS="--newest --oldest": install and use them)
 	@tools/environment.sh dev

@@ -2,6 +2,7 @@
 
     make window                                     the default scene, and BART's Kitchen where it is there
     make window ARGS="--seconds 20 robot.aff"       other scenes, for longer
+    make first-start                                only starts: with nothing compiled, and with the wheel of kernels
 
 Each scene is opened in a window of its own, in a new process.  The first is opened once more before
 that with no kernels compiled.  A frame is timed from when the window begins it until it is on the
@@ -20,8 +21,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from rich.table import Table
@@ -36,15 +38,29 @@ from viewer.util.screen import has_display, no_display_reason
 
 ROOT = Path(__file__).resolve().parents[2]
 SEEN = ("window", "first picture", "full picture")
-GOALS = {"cold": 30.0, "warm": 2.0}  # seconds to the full picture
+COLD, WARM, WHEEL, WHEEL_AGAIN = "cold", "warm", "from the wheel", "the same again"
+GOALS = {COLD: 30.0, WARM: 2.0, WHEEL: 4.0, WHEEL_AGAIN: 4.0}  # seconds to the full picture
 MEDIAN, HIGH = 20.0, 50.0  # milliseconds a frame, and of the 99th percentile
 TRACING = ("tracing", "moving")
 
 
-def measure(scene: Path, size: str, seconds: float, cache: Path) -> dict[str, Any]:
+class Start(NamedTuple):
+    """A start to be timed: of which scene, what is compiled already, where kernels are kept, and what is installed
+    besides, if anything."""
+
+    scene: Path
+    kernels: str
+    cache: Path
+    packages: Path | None = None
+
+
+def measure(start: Start, size: str, seconds: float) -> dict[str, Any]:
     """Open a scene in a window; what the process tells, or RuntimeError in one line where it fails."""
+    scene = start.scene
     with tempfile.TemporaryDirectory() as settings:
-        environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(cache), "SHADOWCULL_CONFIG_DIR": settings}
+        environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(start.cache), "SHADOWCULL_CONFIG_DIR": settings}
+        if start.packages:
+            environment["PYTHONPATH"] = os.pathsep.join([str(start.packages), os.environ.get("PYTHONPATH", "")])
         command = [sys.executable, "-m", "tests.bench.window_server", str(scene.absolute()), size, str(seconds)]
         done = subprocess.run(
             [*command, str(time.time())], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=600
@@ -114,11 +130,22 @@ def _frames(result: dict[str, Any]) -> Table:
     return made
 
 
+def _from_wheel(scene: Path, folder: Path) -> list[Start]:
+    """The first and the second start with the newest wheel of kernels, unpacked into a folder; none without one."""
+    wheels = sorted((ROOT / "dist").glob("shadowcull_kernels-*.whl"), key=lambda path: path.stat().st_mtime)
+    if not wheels:
+        say("no wheel of kernels is timed: make kernel-wheel builds one")
+        return []
+    zipfile.ZipFile(wheels[-1]).extractall(folder / "packages")
+    return [Start(scene, kernels, folder / "cache", folder / "packages") for kernels in (WHEEL, WHEEL_AGAIN)]
+
+
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make window", description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="default: the default scene, and Kitchen if there")
     parser.add_argument("--seconds", type=float, default=8.0, help="of each thing that goes on (default: 8)")
     parser.add_argument("--size", default="1280x800", help="of the window (default: 1280x800)")
+    parser.add_argument("--first-start", action="store_true", help="only start, without kernels and with their wheel")
     parser.add_argument("--no-cold", action="store_true", help="do not start with no kernels compiled")
     parser.add_argument("--no-rehearsal", action="store_true", help="do not open an untimed window first")
     parser.add_argument("--json", type=Path, default=Path("out/window.json"), help="(default: out/window.json)")
@@ -130,12 +157,16 @@ def main(arguments: list[str] | None = None) -> int:
     report: dict[str, Any] = {"machine": machine(), "windows": []}
     try:
         with tempfile.TemporaryDirectory() as empty:
-            runs = [] if options.no_cold else [(scenes[0], "cold", Path(empty))]
+            starts = [] if options.no_cold else [Start(scenes[0], COLD, Path(empty, "cold"))]
+            if options.first_start:
+                starts += _from_wheel(scenes[0], Path(empty))
+            else:
+                starts += [Start(scene, WARM, cache_root()) for scene in scenes]
             if not options.no_rehearsal:  # kernels, and the shaders of Mesa's own cache
-                measure(scenes[0], options.size, 0.5, cache_root())
-            for scene, kernels, cache in [*runs, *((scene, "warm", cache_root()) for scene in scenes)]:
-                result = measure(scene, options.size, options.seconds, cache)
-                about = {"scene": str(scene), "kernels": kernels, "size": options.size}
+                measure(Start(scenes[0], WARM, cache_root()), options.size, 0.5)
+            for start in starts:
+                result = measure(start, options.size, 0.5 if options.first_start else options.seconds)
+                about = {"scene": str(start.scene), "kernels": start.kernels, "size": options.size}
                 report["windows"].append(about | result | {"faults": faults_of(about | result)})
     except RuntimeError as error:
         say(error)
@@ -143,7 +174,7 @@ def main(arguments: list[str] | None = None) -> int:
     options.json.parent.mkdir(parents=True, exist_ok=True)
     options.json.write_text(json.dumps(report, indent=1) + "\n")
     whole = [result for result in report["windows"] if not result["faults"]]
-    for result in whole:
+    for result in whole if not options.first_start else []:
         print_table(_frames(result))
     print_table(_starts(whole))
     print(f"{in_words(report['machine'])}; all in {options.json}")

@@ -13,7 +13,7 @@ import pytest
 import tracer
 from tests.scenes import loaded, world_of
 from tests.sweeps import ACCELERATORS, cases, crossed
-from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, with_lamps
+from tests.tracing.nasty_worlds import NastyWalk, nasty_walk
 from tests.tracing.same import contents
 from tests.tracing.worlds import certificates_of
 from tracer.neighbours.certified.cost_model import CostModel
@@ -39,49 +39,6 @@ def _count(seen: Counter[str], frame: tracer.Frame) -> None:
     shadow = frame.statistics.shadow
     seen.update({name: getattr(shadow, name) for name in ("due", "culled", "dynamic_only", "candidates_only")})
     seen["certificates"] += frame.statistics.certificates
-
-
-def _differing(walk: NastyWalk, seen: Counter[str], **settings: Any) -> list[str]:
-    """Where a walk's pictures are not the same."""
-    none, certified = _renderers(walk.scene, **settings)
-    result = []
-    for number, (time, camera) in enumerate(walk.frames):
-        expected, frame = none.render(time, camera), certified.render(time, camera)
-        if expected.color.tobytes() != frame.color.tobytes():
-            pixels = int((expected.color != frame.color).any(axis=2).sum())
-            result.append(f"seed {walk.seed}, frame {number}, {settings['accelerator']}: {pixels} pixels differ")
-        _count(seen, frame)
-    return result
-
-
-@pytest.mark.parametrize(("method", "accelerator"), crossed(["certified", "certified+cache"], ACCELERATORS))
-def test_pictures_of_nasty_scenes_are_those_without_culling(method: str, accelerator: str):
-    """Moving cameras, lights and objects."""
-    settings = {"method": method, "width": 24, "height": 24, "depth": 3, "accelerator": accelerator}
-    seen: Counter[str] = Counter()
-    assert not [wrong for seed in range(cases(14, 40)) for wrong in _differing(nasty_walk(seed), seen, **settings)]
-    assert min(seen[name] for name in ("culled", "dynamic_only", "candidates_only", "certificates")) > 1000
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_of_what_rests_flattened_or_stretched_are_those_without_culling(accelerator: str):
-    """Of seeds 6, 7, 12 and 18 they were not, on the kd-tree, to whose objects rays are transformed."""
-    seeds = cases((6, 7, 12, 18, 0, 1, 2, 3), range(200))
-    settings = {"method": "certified", "width": 40, "height": 40, "depth": 2, "accelerator": accelerator}
-    seen: Counter[str] = Counter()
-    assert not [wrong for seed in seeds for wrong in _differing(flattened_walk(seed), seen, **settings)]
-    certain = accelerator == "bvh8"  # in the kd-tree, most of it is taken to move
-    told = ("dynamic_only", "culled", "candidates_only") if certain else ("due",)
-    assert min(seen[name] for name in told) > 1000
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_by_nasty_lamps_are_those_without_culling(accelerator: str):
-    settings = {"method": "certified", "width": 24, "height": 24, "depth": 2, "accelerator": accelerator}
-    seen: Counter[str] = Counter()
-    walks = [with_lamps(nasty_walk(seed)) for seed in range(200, cases(208, 240))]
-    assert not [wrong for walk in walks for wrong in _differing(walk, seen, **settings)]
-    assert min(seen[name] for name in ("culled", "dynamic_only", "certificates")) > 1000
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
@@ -181,7 +138,3 @@ def _assert_frames_alike(path: Path, frames: list[int], size: int, depth: int) -
 def test_frames_of_bart_are_those_without_culling(bart: Path, name: str):
     """Neighbours, and cuts from one end of the path to the other."""
     _assert_frames_alike(bart / name, [0, 1, 150, 151], 72, 10)
-
-
-def test_frames_of_the_default_scene_are_those_without_culling():
-    _assert_frames_alike(SCENES / "default.aff", [0, 1, 10, 11], 72, 10)

@@ -23,7 +23,7 @@ from tracer.simd import address_of, bits_of, f32x16, load_columns, load_three, l
 from tracer.visibility.area_light_tests import KEPT, ask_points
 from tracer.visibility.blockers import find_blockers, hull_of, that_hide
 from tracer.visibility.classify import PrismQuestion, classify_for_prism
-from tracer.visibility.error_bounds import BOX, ROW, SureHitLength
+from tracer.visibility.error_bounds import BOX, CORNER_ERROR, ROW, SureHitLength
 from tracer.visibility.light_space import LIGHT_ROW, in_all_lanes, judge, put_light_space, verdicts
 from tracer.visibility.prepared_triangles import PREPARED, Lamp, prepare
 from tracer.visibility.shaft import PrismShaft, make_prism_shaft, put_light
@@ -86,11 +86,12 @@ class Rows(NamedTuple):
     farthest: Any
 
 
-def rows_of(triangle: Vectors) -> Vectors:
-    """Sixteen times the row of a triangle (9,) float32, corner and edges."""
+def rows_of(triangle: Vectors, corner_error: float) -> Vectors:
+    """Sixteen times the row of a triangle (9,) float32, corner and edges, and what its corners may be wrong by."""
     rows = np.zeros((LANES, ROW), np.float32)
     corners = np.stack([triangle[:3], triangle[:3] + triangle[3:6], triangle[:3] + triangle[6:]])
-    room = 1e-5 * np.abs(corners).max()
+    room = 1e-5 * np.abs(corners).max() + corner_error
+    rows[:, CORNER_ERROR] = corner_error
     rows[:, :9], rows[:, BOX : BOX + 3], rows[:, BOX + 3 :] = triangle, corners.min(0) - room, corners.max(0) + room
     return rows
 
@@ -160,9 +161,9 @@ def _prism_shaft(hull: Hull) -> PrismShaft:
     return shaft
 
 
-def claim(triangle: Vectors, light: Hull, receiver: Hull, sure: float) -> set[str]:
+def claim(triangle: Vectors, light: Hull, receiver: Hull, sure: float, corner_error: float = 0.0) -> set[str]:
     """What is claimed of a triangle (9,) and all rays from one hull to another."""
-    claims, rows = np.zeros(2, np.int64), rows_of(triangle)
+    claims, rows = np.zeros(2, np.int64), rows_of(triangle, corner_error)
     ends = np.ascontiguousarray(np.repeat(receiver.middle[:, None], LANES, axis=1), np.float32)
     if light.kind == "box":
         one, other = (
@@ -266,13 +267,14 @@ class Slide(NamedTuple):
     light: Hull
     receiver: Hull
     sure: float
+    corner_error: float = 0.0
 
     def at(self, part: float) -> Vectors:
         corner = self.triangle[:3] + np.float32(part) * self.aside.astype(np.float32)
         return np.concatenate([corner, self.triangle[3:]]).astype(np.float32)
 
     def claims(self, part: float) -> set[str]:
-        return claim(self.at(part), self.light, self.receiver, self.sure)
+        return claim(self.at(part), self.light, self.receiver, self.sure, self.corner_error)
 
     def claimed(self, name: str, part: float) -> bool:
         return name in self.claims(part)
@@ -322,6 +324,51 @@ def _too_long(triangle: Vectors, light: Hull, receiver: Hull) -> bool:
     """Whether rays are longer than those that the fast structure is certain of (`SureHitLength`)."""
     extent = np.abs(np.stack([triangle[:3], triangle[:3] + triangle[3:6], triangle[:3] + triangle[6:]])).max()
     return max(np.linalg.norm(p - q) for p in light.extremes for q in receiver.extremes) > 2.0 * extent
+
+
+def test_nothing_false_is_claimed_where_products_of_lengths_overflow() -> None:
+    """A triangle within the range of float32, and prisms so far behind it that U, V and W overflow, also to NaN."""
+    corner = [-243399311360, -277788360704, 45160247296]
+    e1, e2 = [133535039488, 208200007680, 3711275008], [278131048448, 3757817856, 249759907840]
+    triangle = np.array([*corner, *e1, *e2], np.float32)
+    rng, light = np.random.default_rng(3), point(np.zeros(3), 0, np.random.default_rng(0))
+    way, middle = np.array([-0.3960, -0.7801, 0.4844]), triangle[:3] + (triangle[3:6] + triangle[6:]) / 3
+    assert claim(triangle * np.float32(1e-3), light, prism(1.5e-3 * middle, 1e6, rng), 1e36) == {HIT}
+    for distance in np.logspace(11.5, 16.5, 101):
+        receiver = prism(distance * way, 1e-3 * distance, np.random.default_rng(3))
+        with np.errstate(over="ignore", invalid="ignore"):
+            claimed = claim(triangle, light, receiver, 1e36)
+        for name in claimed:
+            assert all(crosses(triangle, light.middle, end) == (name == HIT) for end in receiver.extremes), distance
+    assert not claimed, "nothing is known of lengths whose products overflow"
+
+
+@pytest.mark.parametrize("pair", ["point to point", "point to prism", "ball to point"])
+def test_claims_hold_for_all_triangles_whose_corners_are_that_close(pair: str) -> None:
+    """The corners of a resting triangle are somewhere near where they are taken to be: claims hold wherever that is."""
+    rng, tried, (a_light, a_receiver) = np.random.default_rng(13), Counter[str](), PAIRS[pair]
+    for number in range(cases(30, 600)):
+        way, aside = rng.normal(size=(2, 3))
+        way, aside = way / np.linalg.norm(way), np.cross(way, aside)
+        light = a_light(np.zeros(3), 10.0 ** rng.uniform(-3, -1), rng)
+        receiver = a_receiver(4.0 * way, 10.0 ** rng.uniform(-3, -1), rng)
+        size, corner_error = 10.0 ** rng.uniform(-3, 0.5), 10.0 ** rng.uniform(-6, -2)
+        triangle = _triangle(rng.uniform(0.05, 3.95) * way, way, size, rng)
+        slide = Slide(triangle, aside, light, receiver, 1e6, corner_error)
+        for claimed, inner, outer in ((HIT, 0.0, 8.0), (MISSED, 8.0, 0.0)):
+            holds = partial(slide.claimed, claimed)
+            if not holds(inner):
+                continue
+            tried[claimed] += 1
+            triangle = slide.at(last(holds, inner, outer))
+            corners = np.stack([triangle[:3], triangle[:3] + triangle[3:6], triangle[:3] + triangle[6:]])
+            for _ in range(40):
+                moves = rng.normal(size=(3, 3))
+                a, b, c = corners + 0.999 * corner_error * moves / np.linalg.norm(moves, axis=1, keepdims=True)
+                moved = np.concatenate([a, b - a, c - a])
+                for start, end in product(light.extremes[:8], receiver.extremes):
+                    assert crosses(moved, start, end) == (claimed == HIT), (number, claimed, corner_error)
+    assert tried[HIT] > cases(3, 60) and tried[MISSED] > cases(12, 240), tried
 
 
 @pytest.mark.parametrize("pair", PAIRS)

@@ -35,7 +35,7 @@ from tracer.simd import select as choose_lanes
 from tracer.simd.records import I64x2D, pack, reading
 from tracer.statistics import FrameStatistics
 from tracer.visibility.budget import Budget, Counts
-from tracer.visibility.error_bounds import BLUR, BOX, ROW, SureHitLength
+from tracer.visibility.error_bounds import BOX, CORNER_ERROR, ROW, SureHitLength
 
 SET_UP = 1.5e-6  # seconds for each primitive
 WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
@@ -169,7 +169,7 @@ class CertifiedLights(ShadowMethod):
         if not len(self._rows) and self._has_lamps(lamps):
             triangles = self.services.world.triangles_of(0)
             self._rows = aligned_rows(len(triangles.rows), ROW)
-            self._rows[:, :BLUR], self._rows[:, BLUR], self._rows[:, BOX:] = triangles
+            self._rows[:, :CORNER_ERROR], self._rows[:, CORNER_ERROR], self._rows[:, BOX:] = triangles
         return RecentOccluders(
             self._rows,
             SureHitLength(len(self._rows), self.store.hidden.blockers.longest, 0.0),

@@ -49,7 +49,6 @@ from tracer.visibility.error_bounds import (
 from tracer.visibility.prepared_triangles import (
     CORNER,
     FAR,
-    FIRM,
     FIXED,
     HEIGHT,
     HIGH,
@@ -59,9 +58,10 @@ from tracer.visibility.prepared_triangles import (
     OF_V,
     OF_W,
     REACH,
+    SIGNED_FIRST,
+    SIGNED_SECOND,
     SURE,
-    TURNED_FIRST,
-    TURNED_SECOND,
+    SURE_SIDE,
     UNSURE,
     D,
     U,
@@ -100,8 +100,8 @@ class _Columns(NamedTuple):
     """Columns of sixteen prepared triangles, or of one in all lanes."""
 
     corner: Any
-    turned_first: Any
-    turned_second: Any
+    signed_first: Any
+    signed_second: Any
     u: Any
     v: Any
     d: Any
@@ -115,16 +115,16 @@ class _Columns(NamedTuple):
 @inlined
 def _columns(at, one):
     """The columns of prepared triangles at an address (`column_at`)."""
-    corner, turned = (
+    corner, edges = (
         columns_at(at, CORNER, one),
-        (columns_at(at, TURNED_FIRST, one), columns_at(at, TURNED_SECOND, one)),
+        (columns_at(at, SIGNED_FIRST, one), columns_at(at, SIGNED_SECOND, one)),
     )
     u, v, w = column_at(at, OF_U, one), column_at(at, OF_V, one), column_at(at, OF_W, one)
     factors = Factors(u, v, w, w, column_at(at, NEAR, one), column_at(at, FAR, one), column_at(at, FIXED, one))
     functions = columns_at(at, U, one), columns_at(at, V, one), columns_at(at, D, one)
     reach, height = column_at(at, REACH, one), column_at(at, HEIGHT, one)
     unsure, sure = column_at(at, UNSURE, one), column_at(at, SURE, one)
-    return _Columns(corner, *turned, *functions, factors, reach, height, unsure, sure)
+    return _Columns(corner, *edges, *functions, factors, reach, height, unsure, sure)
 
 
 class _Rays(NamedTuple):
@@ -148,8 +148,8 @@ def _rays(t, end, light, radius):
 
 
 class _Answers(NamedTuple):
-    """What triangles do to rays, as masks of lanes, and in brackets where they are not firm: `hidden` is all of the
-    lamp; `missed` (`missed_here`) nothing of it; and a hit `can` (`can_here`) be certain."""
+    """What triangles do to rays, as masks of lanes: `hidden` is all of the lamp, `missed` nothing of it, and a hit
+    `can` be certain; `missed_here` and `can_here` hold where it is not certain on which side of them the lamp is."""
 
     hidden: Any
     missed: Any
@@ -164,7 +164,7 @@ def _compare(t, rays, end, radius, kept):
     goes to the address `kept`."""
     u, v, d, b = dot(t.u, rays.way), dot(t.v, rays.way), dot(t.d, rays.way), rays.b
     w, along = d - u - v, maximum(d, -d) + t.reach
-    to_u, to_v = cross(rays.near, t.turned_second), cross(t.turned_first, rays.near)
+    to_u, to_v = cross(rays.near, t.signed_second), cross(t.signed_first, rays.near)
     to_w = -t.d[0] - to_u[0] - to_v[0], -t.d[1] - to_u[1] - to_v[1], -t.d[2] - to_u[2] - to_v[2]
     by_u, by_v, by_w = spread_in_ball(to_u, radius), spread_in_ball(to_v, radius), spread_in_ball(to_w, radius)
     m = bounds(t.factors, rays.longest, length16(rays.near), along, size_of(end))
@@ -197,14 +197,14 @@ def ask_points(triangle, end, light, radius, kept):
     The prepared triangle's numbers are at an address.  (bits of the points from which it hides all of the lamp, of
     those from which none, and of those from which it may hide a sample for certain).  For `ask_samples` what is known
     of the points goes to the address `kept`, KEPT bytes, unless the triangle hides no sample from any."""
-    t, firm = _columns(triangle, True), number_at(triangle, FIRM)
+    t, sure_side = _columns(triangle, True), number_at(triangle, SURE_SIDE)
     rays = _rays(t, end, light, radius)
-    if firm > ZERO and bits_of(rays.b < -rays.of_b) == 0xFFFF:
+    if sure_side > ZERO and bits_of(rays.b < -rays.of_b) == 0xFFFF:
         return 0, 0xFFFF, 0
     a = _compare(t, rays, end, radius, kept)
-    if firm > ZERO:
+    if sure_side > ZERO:
         return bits_of(a.hidden), bits_of(a.missed), bits_of(a.can)
-    if firm < ZERO:
+    if sure_side < ZERO:
         return 0, 0, 0
     return 0, bits_of(a.missed_here), bits_of(a.can_here)
 
@@ -217,12 +217,12 @@ def ask_triangles(made, point, light, radius, kept):
     (bits of the sixteen prepared triangles that hide all of the lamp, of those that hide nothing of it, and of those
     that may hide a sample for certain).  For `ask_samples` what is known of each triangle goes to the address `kept`,
     KEPT bytes."""
-    t, firm = _columns(made, False), column_at(made, FIRM, False)
+    t, sure_side = _columns(made, False), column_at(made, SURE_SIDE, False)
     end = f32x16(point[0]), f32x16(point[1]), f32x16(point[2])
     a = _compare(t, _rays(t, end, light, radius), end, radius, kept)
-    firmly, here = bits_of(firm > ZERO), bits_of(firm == ZERO)
-    missed = firmly & bits_of(a.missed) | here & bits_of(a.missed_here)
-    return firmly & bits_of(a.hidden), missed, firmly & bits_of(a.can) | here & bits_of(a.can_here)
+    certain, here = bits_of(sure_side > ZERO), bits_of(sure_side == ZERO)
+    missed = certain & bits_of(a.missed) | here & bits_of(a.missed_here)
+    return certain & bits_of(a.hidden), missed, certain & bits_of(a.can) | here & bits_of(a.can_here)
 
 
 # --- samples ----------------------------------------------------------------------------------------------
@@ -230,7 +230,7 @@ def ask_triangles(made, point, light, radius, kept):
 
 class _AtCentre(NamedTuple):
     """A triangle and points, or one in all lanes: the functions, D and T of rays from the lamp's centre, their
-    gradients there, and what they may be wrong by, turned so that the triangle is seen from its front."""
+    gradients there, and what they may be wrong by, with such signs that the triangle is seen from its front."""
 
     at: Functions
     d: Any
@@ -286,11 +286,11 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
     address `blocked`, int32 for sixteen samples each, if the triangle `can` hide any for certain; those of which
     nothing is certain join `unsure`.  Whether all are blocked."""
     k, b = kept + 4 * lane, number_at(kept + 4 * lane, AT_B)
-    firm, every = number_at(triangle, FIRM), np.int64(0xFFFF)
-    if firm > ZERO or (firm == ZERO and abs(b) > number_at(k, BOUND_B)):
-        c = _at_centre(triangle, k, True, f32x16(ONE if firm > ZERO or b >= ZERO else -ONE))
+    sure_side, every = number_at(triangle, SURE_SIDE), np.int64(0xFFFF)
+    if sure_side > ZERO or (sure_side == ZERO and abs(b) > number_at(k, BOUND_B)):
+        c = _at_centre(triangle, k, True, f32x16(ONE if sure_side > ZERO or b >= ZERO else -ONE))
         along = abs(number_at(k, AT_D)) + number_at(triangle, REACH)
-        high = firm > ZERO and number_at(triangle, HEIGHT) > _LAMP * along
+        high = sure_side > ZERO and number_at(triangle, HEIGHT) > _LAMP * along
         for group in range(groups):
             if load_i32(blocked + 4 * group) == 0xFFFF:
                 continue
@@ -302,7 +302,8 @@ def ask_samples(triangle, kept, lane, can, samples, groups, blocked, unsure):
     for group in range(groups):
         start = _places(samples + 64 * group + 3 * PLACES)
         missed = segments_miss_box(start, (x - start[0], y - start[1], z - start[2]), low, upper)
-        every &= _note(blocked + 4 * group, unsure + 4 * group, np.int64(0), bits_of(missed) if firm == ZERO else 0)
+        passed = bits_of(missed) if sure_side == ZERO else 0
+        every &= _note(blocked + 4 * group, unsure + 4 * group, np.int64(0), passed)
     return every == 0xFFFF
 
 
@@ -330,11 +331,11 @@ def hide_samples(triangle, kept, can, samples, count, bits):
     The prepared triangle, what `ask_points` kept of it and of sixteen points, of which some `can` (bits) be certain of
     a hit, and samples, as `put_samples` put them, are at addresses.  Points that are shaded together are neighbours: a
     triangle that hides much of a lamp from one hides much of it from all."""
-    firm, every = number_at(triangle, FIRM), np.int64(0xFFFF)
+    sure_side, every = number_at(triangle, SURE_SIDE), np.int64(0xFFFF)
     front = column_at(kept, AT_B, False) >= ZERO
-    side = f32x16(ONE) if firm > ZERO else select(front, f32x16(ONE), f32x16(-ONE))
+    side = f32x16(ONE) if sure_side > ZERO else select(front, f32x16(ONE), f32x16(-ONE))
     c, least, reach = _at_centre(triangle, kept, False, side), number_at(triangle, HEIGHT), number_at(triangle, REACH)
-    high = firm > ZERO and bits_of(_LAMP * (maximum(c.d, -c.d) + reach) < least) == 0xFFFF
+    high = sure_side > ZERO and bits_of(_LAMP * (maximum(c.d, -c.d) + reach) < least) == 0xFFFF
     for k in range(count):
         at = samples + 4 * k
         hidden, _missed = _judge_samples(c, (load_f32(at), load_f32(at + PLACES), load_f32(at + 2 * PLACES)), high)

@@ -125,7 +125,7 @@ def hull_of(boxes, i):
 
 @inlined
 def between_middles(blockers, group, lights, region):
-    """Bits of the blockers of a group that part the middle of one `Hull` from that of another: few others hide it."""
+    """Bits of the blockers of a group that lie between the middles of two `Hull`s: few others hide one from another."""
     t = seen_from(lights.middle, ZERO, _columns_of(blockers, group))
     x, y, z = region.middle
     way = x - lights.middle[0], y - lights.middle[1], z - lights.middle[2]
@@ -148,7 +148,7 @@ def that_hide(blockers, group, lights, region):
     """Bits of the blockers of a group that block every ray from one `Hull` to another."""
     row, half = _columns_of(blockers, group), region.half
     t = seen_from(lights.middle, ZERO, row)
-    normal = scaled(cross(t.e1, t.e2), t.turned)
+    normal = scaled(cross(t.e1, t.e2), t.side)
 
     # Bound lengths: of rays, and from both of their ends to the triangles' corners.
     reach = lights.half[0] + half[0], lights.half[1] + half[1], lights.half[2] + half[2]
@@ -175,7 +175,7 @@ def that_hide(blockers, group, lights, region):
         ly = lights.half[1] if k & 2 else -lights.half[1]
         lz = lights.half[2] if k & 4 else -lights.half[2]
         s, way = (t.s[0] + lx, t.s[1] + ly, t.s[2] + lz), (wx - lx, wy - ly, wz - lz)
-        to_u, to_v = scaled(cross(t.e2, s), t.turned), scaled(cross(s, t.e1), t.turned)
+        to_u, to_v = scaled(cross(t.e2, s), t.side), scaled(cross(s, t.e1), t.side)
         to_w = t.d[0] - to_u[0] - to_v[0], t.d[1] - to_u[1] - to_v[1], t.d[2] - to_u[2] - to_v[2]
         u = minimum(u, dot(to_u, way) - spread_in_box(to_u, half))
         v = minimum(v, dot(to_v, way) - spread_in_box(to_v, half))
@@ -185,6 +185,6 @@ def that_hide(blockers, group, lights, region):
     # farther.
     further = np.float32(1.25) * away
     f = factors(t.first, t.second, maximum(t.first, t.second), t.across, further, highest, ZERO)
-    hit = t.sane & surely_hit(Functions(u, v, w, b - by_b), bounds(f, longest, near, along, coordinates))
+    hit = t.in_range & surely_hit(Functions(u, v, w, b - by_b), bounds(f, f32x16(longest), near, along, coordinates))
     hit = hit & (height > t.unsure * (further / t.away)) & (height > _LAMP * along)
     return bits_of(hit & (f32x16(longest) < np.float32(blockers.longest)))

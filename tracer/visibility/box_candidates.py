@@ -1,8 +1,8 @@
 """Find what may come between a light and a box of space, with all that a worker needs for that.
 
 A ray that goes on beyond the box has larger functions still: U, V and D - U - V grow in step with their bounds, and
-D - T by more than its own where these clear theirs.  So what is certain of rays that end in the box is certain of those
-that enter it and go on.
+D - T by more than what the structures may be wrong by, where U, V and D - U - V clear their bounds.  So what is certain
+of rays that end in the box is certain of those that enter it and go on.
 """
 
 from __future__ import annotations
@@ -96,10 +96,10 @@ def classify_for_box(question, numbers):
     hit, missed = judge(t, light.place, in_all_lanes(question.center), (half, half, half), longest)
     if any_lane(~hit & ~missed):
         # A primitive that hides nothing for certain is as large as the box that its row begins with.
-        row, firm = load_columns(address_of(o.rows), numbers, ROW), t[FARTHEST] >= ZERO
+        row, sure_side = load_columns(address_of(o.rows), numbers, ROW), t[FARTHEST] >= ZERO
         radius = gather_f32x16(address_of(o.error_radii[question.number]), load_i32x16(numbers))
-        missed = missed | (firm & triangle_outside(shaft, row[0:3], row[3:6], row[6:9], radius))
-        missed = missed | (~firm & box_outside(shaft, t[U:V], t[V:D]))
+        missed = missed | (sure_side & triangle_outside(shaft, row[0:3], row[3:6], row[6:9], radius))
+        missed = missed | (~sure_side & box_outside(shaft, t[U:V], t[V:D]))
     return bits_of(hit), bits_of(missed)
 
 

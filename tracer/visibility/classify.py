@@ -87,25 +87,25 @@ def _over(t, shaft):
         us, vs, ws, bs, ds = _both(us, f.u), _both(vs, f.v), _both(ws, f.w), _both(bs, f.b), _both(ds, d)
         near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
         coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
-    along, longest, f = maximum(ds[1], -ds[0]), np.float32(shaft.longest[0]), factors_of(t)
-    of_d = longest * (f.d + np.float32(2 * SURPLUS) * t.blur * (t.first + t.second)) + SMALL
+    along, longest, f = maximum(ds[1], -ds[0]), f32x16(np.float32(shaft.longest[0])), factors_of(t)
+    of_d = longest * (f.d + np.float32(2 * SURPLUS) * t.corner_error * (t.first + t.second)) + SMALL
     least, most = Functions(us[0], vs[0], ws[0], bs[0]), Functions(us[1], vs[1], ws[1], bs[1])
     return _Extremes(least, most, ds, along, bounds(f, longest, near, along, coordinates), of_d)
 
 
 @inlined
-def _parting(x, y, low, high):
+def _separating(x, y, low, high):
     """Narrow the range of factors for which x + factor y is negative by one more corner.
 
-    x and y are two functions there, error bounds added to both."""
+    x and y are two functions there, error bounds added to both; the range is empty where either is NaN."""
     ratio = -x / y
     low = maximum(low, select(y < ZERO, ratio, ZERO))
     high = minimum(high, select(y > ZERO, ratio, HUGE))
-    return low, select((x >= ZERO) & (y >= ZERO), -ONE, high)
+    return low, select((x < ZERO) & (y == y) | (y < ZERO) & (x == x), high, -ONE)
 
 
 @inlined
-def _parted_by_two(t, shaft, m):
+def _separated_by_two(t, shaft, m):
     """Mask of triangles of which some sum of two functions with positive factors is negative at all corners."""
     start = f32x16(ZERO), f32x16(HUGE)
     ub, vb, wb, uv, uw, vw = start, start, start, start, start, start
@@ -113,10 +113,10 @@ def _parted_by_two(t, shaft, m):
         direction, end = _at(shaft, k)
         f, _d = functions(t, direction, end)
         u, v, w, b = f.u + m.u, f.v + m.v, f.w + m.w, f.b + m.b
-        ub, vb, wb = _parting(u, b, ub[0], ub[1]), _parting(v, b, vb[0], vb[1]), _parting(w, b, wb[0], wb[1])
-        uv, uw, vw = _parting(u, v, uv[0], uv[1]), _parting(u, w, uw[0], uw[1]), _parting(v, w, vw[0], vw[1])
-    parted = (ub[0] < ub[1]) | (vb[0] < vb[1]) | (wb[0] < wb[1])
-    return parted | (uv[0] < uv[1]) | (uw[0] < uw[1]) | (vw[0] < vw[1])
+        ub, vb, wb = _separating(u, b, ub[0], ub[1]), _separating(v, b, vb[0], vb[1]), _separating(w, b, wb[0], wb[1])
+        uv, uw, vw = _separating(u, v, uv[0], uv[1]), _separating(u, w, uw[0], uw[1]), _separating(v, w, vw[0], vw[1])
+    separated = (ub[0] < ub[1]) | (vb[0] < vb[1]) | (wb[0] < wb[1])
+    return separated | (uv[0] < uv[1]) | (uw[0] < uw[1]) | (vw[0] < vw[1])
 
 
 @inlined
@@ -124,7 +124,7 @@ def _before_planes(t, m, depth, light, shaft):
     """Mask of triangles that lie before a plane of the shaft, by more than a reported hit may lie beyond them."""
     # Twice m / depth: the bounds are doubled for our own errors, which do not count here.
     part, beyond = maximum(m.u, maximum(m.v, m.w)) / depth, m.b / depth * np.float32(shaft.longest[0])
-    parted = depth < ZERO
+    separated = depth < ZERO
     for k in range(PLANES):
         plane = shaft.planes[k]
         n, offset = _short(plane), np.float32(plane[3] - dot(plane, light))
@@ -132,8 +132,8 @@ def _before_planes(t, m, depth, light, shaft):
         g1, g2 = g + dot(t.e1, n), g + dot(t.e2, n)
         least, most = minimum(g, minimum(g1, g2)), maximum(g, maximum(g1, g2))
         rounded = ROUNDING * (t.away + t.first + t.second + abs(offset))
-        parted = parted | (least > part * (most - least) + beyond + t.blur + rounded)
-    return parted & (depth > ZERO)
+        separated = separated | (least > part * (most - least) + beyond + t.corner_error + rounded)
+    return separated & (depth > ZERO)
 
 
 class PrismQuestion(NamedTuple):
@@ -154,22 +154,22 @@ def classify_for_prism(question, numbers):
     t = seen_from(_short(light), ZERO, row)
     over = _over(t, shaft)
     least, most, m = over.least, over.most, over.bounds
-    hit = t.firm & surely_hit(least, m) & (t.height > np.float32(LAMP) * over.along)
-    missed = t.firm & surely_missed(most, m)
+    hit = t.sure_side & surely_hit(least, m) & (t.height > np.float32(LAMP) * over.along)
+    missed = t.sure_side & surely_missed(most, m)
 
     # Where the light lies in a triangle's plane, as far as float32 can tell, D may have either sign: try both.
     of_d = m.b + m.w
     backwards = (least.u > m.u) | (least.v > m.v) | (least.w > m.w) | (over.d[0] > of_d)
-    missed = missed | (t.sane & (beside(most, m) | (over.d[1] < -of_d)) & backwards)
+    missed = missed | (t.in_range & (beside(most, m) | (over.d[1] < -of_d)) & backwards)
 
-    # Or a plane or box parts the triangle from the shaft.
-    depth = maximum(select(t.firm, t.height - m.b, ZERO), maximum(over.d[0], -over.d[1]) - over.of_d)
+    # Or a plane or box separates the triangle from the shaft.
+    depth = maximum(select(t.sure_side, t.height - m.b, ZERO), maximum(over.d[0], -over.d[1]) - over.of_d)
     low, high = grown(row[BOX:ROW], np.float32(REPORTED) * t.away)
-    missed = missed | (t.sane & _before_planes(t, m, depth, light, shaft)) | box_outside(shaft, low, high)
+    missed = missed | (t.in_range & _before_planes(t, m, depth, light, shaft)) | box_outside(shaft, low, high)
 
     # Or, which takes longest, a plane through one of the triangle's edges does.
-    if any_lane(t.firm & ~missed & ~hit):
-        missed = missed | (t.firm & _parted_by_two(t, shaft, m))
+    if any_lane(t.sure_side & ~missed & ~hit):
+        missed = missed | (t.sure_side & _separated_by_two(t, shaft, m))
     hit = hit & (sure_hit_length(farthest, numbers) > np.float32(shaft.longest[0]))
     return bits_of(hit), bits_of(missed)
 
@@ -195,7 +195,7 @@ def put_hidden_parts(rows, numbers, farthest, light, shaft, parts):
         store(parts + 64 * (2 * BELOW + k), minimum(below.w, above.w) - np.float32(INSIDE) * m.w)
         store(parts + 64 * (3 * BELOW + k), minimum(below.b, above.b) - m.b)
     return bits_of(
-        t.firm
+        t.sure_side
         & (t.height > np.float32(LAMP) * over.along)
         & (sure_hit_length(farthest, numbers) > np.float32(shaft.longest[0]))
     )

@@ -24,17 +24,18 @@ LONGEST = 13 * EPSILON  # times a ray's length: what boxes must be padded by for
 LAMP = 2e-5  # of the way from the light: what lies in it may be nearer than rays begin
 # Columns of a primitive's row: a corner, two edges, how far its corners may be elsewhere, and a box (6,) outside of
 # which no hit is reported, but for REPORTED of the light's distance.  Quadrics have the box alone.
-BLUR, BOX, ROW = 9, 10, 16
-REPORTED = 4e-5  # more than 3 of the kd-tree's 1e-5, turned, by objects whose axes differ by a tenth in length
+CORNER_ERROR, BOX, ROW = 9, 10, 16
+REPORTED = 4e-5  # more than 3 of the kd-tree's 1e-5, rotated, by objects whose axes differ by a tenth in length
 LANES = 16  # rows that are looked at together
 SMALL, LARGE = np.float32(1e-30), np.float32(1e12)  # volumes and lengths outside of which float32 may lose more
+_UNKNOWN = np.float32(np.inf)
 
 ZERO, HALF, ONE, TWO, THREE, FOUR, FIVE, EIGHT, NINE = (np.float32(k) for k in (0, 0.5, 1, 2, 3, 4, 5, 8, 9))
 _EPSILON, _SURPLUS, _TWICE = np.float32(EPSILON), np.float32(SURPLUS), np.float32(2 * SURPLUS)
 LARGER = np.float32(2 * SURPLUS * (ENLARGED + 7 * EPSILON))
 _INSIDE = np.float32(INSIDE)
 _WIDE, _ROUNDED = np.float32(2 * REPORTED), np.float32(1e-6)
-_FIRM, _FIRM_BLUR = np.float32(44 * EPSILON), np.float32(1.25)
+_T = np.float32(44 * EPSILON)
 
 
 class SeenTriangles(NamedTuple):
@@ -47,11 +48,11 @@ class SeenTriangles(NamedTuple):
         u, v, d: vectors whose dot products with a direction from the centre are U, V and D, times the sign of T.
         height, highest: |T|, the light's height above the plane times the normal's length: at least, and at most.
         away, first, second, across: lengths of s, e1, e2 and the normal.
-        turned: the sign of T, by which u, v and d are turned.
+        side: the sign of T: on which side of the triangle the light is.
         unsure: by how much T must differ from 0 for its sign to be certain.
-        blur: how far the corners may be elsewhere.
-        firm: whether the sign of T is certain.
-        sane: whether float32 can tell anything at all.
+        corner_error: how far the corners may be elsewhere.
+        sure_side: whether that sign is certain.
+        in_range: whether float32 can tell anything at all.
     """
 
     corner: Any
@@ -67,11 +68,11 @@ class SeenTriangles(NamedTuple):
     first: Any
     second: Any
     across: Any
-    turned: Any
+    side: Any
     unsure: Any
-    blur: Any
-    firm: Any
-    sane: Any
+    corner_error: Any
+    sure_side: Any
+    in_range: Any
 
 
 class SureHitLength(NamedTuple):
@@ -169,34 +170,35 @@ def rows_at(rows, numbers):
 
 
 @inlined
-def unsure_of_t(away, first, second, blur):
+def unsure_of_t(away, first, second, error):
     """By how much T must differ from 0 for its sign to be certain, of a light no more than `away` from a triangle's
     corner; lengths of its edges, and how far its corners may be elsewhere."""
-    return away * (_FIRM * first * second + _FIRM_BLUR * blur * (first + second)) + blur * first * second + SMALL
+    edges, tilt = first * second, TWO * error * (first + second + TWO * error)
+    return _SURPLUS * ((away + error) * tilt + error * edges) + _T * away * edges + SMALL
 
 
 @inlined
 def seen_from(light, radius, row):
     """Sixteen triangles, columns of their rows, as a lamp sees them, whose samples lie in a ball around light (3,).
 
-    The height is the least of any point of the ball, distances are the greatest; firm and sane hold for all of them."""
-    e1, e2, blur = row[3:6], row[6:9], row[BLUR]
+    The height is the least of any point of the ball, distances the greatest; the last two hold for all of them."""
+    e1, e2, error = row[3:6], row[6:9], row[CORNER_ERROR]
     s = light[0] - row[0], light[1] - row[1], light[2] - row[2]
     n = cross(e1, e2)
-    # Turn all functions so that T is positive.
+    # Give all functions such signs that T is positive.
     facing = dot(s, n)
-    turned = select(facing >= ZERO, ONE, -ONE)
+    side = select(facing >= ZERO, ONE, -ONE)
     first, second, across = length16(e1), length16(e2), length16(n)
-    away, height, reach = length16(s) + radius, facing * turned, radius * across
+    away, height, reach = length16(s) + radius, facing * side, radius * across
     highest, height = height + reach, height - reach
 
     # Is T's sign certain?
-    unsure = unsure_of_t(away, first, second, blur)
-    sane = maximum(away, maximum(first, second)) < LARGE
-    firm = sane & (height > unsure)
-    u, v, d = scaled(cross(e2, s), turned), scaled(cross(s, e1), turned), scaled(n, -turned)
+    unsure = unsure_of_t(away, first, second, error)
+    in_range = maximum(away, maximum(first, second)) < LARGE
+    sure = in_range & (height > unsure)
+    u, v, d = scaled(cross(e2, s), side), scaled(cross(s, e1), side), scaled(n, -side)
     return SeenTriangles(
-        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, turned, unsure, blur, firm, sane
+        row[0:3], s, e1, e2, u, v, d, height, highest, away, first, second, across, side, unsure, error, sure, in_range
     )
 
 
@@ -218,15 +220,15 @@ def functions(t, direction, end):
 
 
 @inlined
-def factors(first, second, longer, across, away, highest, blur):
+def factors(first, second, longer, across, away, highest, error):
     """The `Factors` of triangles with edges of these lengths, the longer of both, and a normal of length `across`.
 
     The light is no more than `away` from their corner, |T| no more than `highest`; corners may be elsewhere by
-    `blur`."""
-    blurred, edges = FIVE * blur * longer, _EPSILON * (first * second)
-    u, v = _TWICE * (NINE * _EPSILON * away * second + blurred), _TWICE * (NINE * _EPSILON * away * first + blurred)
+    `error`."""
+    moved, edges = FIVE * error * (longer + error), _EPSILON * (first * second)
+    u, v = _TWICE * (NINE * _EPSILON * away * second + moved), _TWICE * (NINE * _EPSILON * away * first + moved)
     d = _TWICE * (FOUR * edges + FIVE * _EPSILON * across)
-    fixed = FOUR * across * (blur + _EPSILON * away) + THREE * _EPSILON * highest
+    fixed = FOUR * across * (error + _EPSILON * away) + THREE * _EPSILON * highest
     far = _SURPLUS * FOUR * _EPSILON * across
     # 4 edges are the structures' error, 8 more our own.
     return Factors(u, v, u + v + d, d, _SURPLUS * (FOUR + EIGHT) * edges, far, _SURPLUS * fixed)
@@ -235,7 +237,7 @@ def factors(first, second, longer, across, away, highest, blur):
 @inlined
 def factors_of(t):
     """The `Factors` of triangles as seen."""
-    return factors(t.first, t.second, maximum(t.first, t.second), t.across, t.away, t.highest, t.blur)
+    return factors(t.first, t.second, maximum(t.first, t.second), t.across, t.away, t.highest, t.corner_error)
 
 
 @inlined
@@ -245,11 +247,19 @@ def bound_of_b(f, longest, near, coordinates):
 
 
 @inlined
+def _if_known(longest):
+    """A length of rays, or infinity where they are so long that float32 may lose more: no bound is exceeded then."""
+    return select(longest < LARGE, longest, _UNKNOWN)
+
+
+@inlined
 def bounds(f, longest, near, along, coordinates):
     """By how much float32 may be wrong about U, V, W and B, our own errors included (`Functions`).
 
     They hold for directions no longer than `longest`, ends no further than `near` from the triangle's corner and with
-    no more than this sum of absolute `coordinates`, and |D| no more than `along`."""
+    no more than this sum of absolute `coordinates`, and |D| no more than `along`.  For longer directions than `LARGE`
+    they are infinite."""
+    longest = _if_known(longest)
     larger, b = LARGER * along + SMALL, bound_of_b(f, longest, near, coordinates)
     return Functions(f.u * longest + larger, f.v * longest + larger, f.w * longest + larger, b)
 
@@ -257,22 +267,23 @@ def bounds(f, longest, near, along, coordinates):
 # Factors in a row of `light_space` are four numbers: u, v, b and none for w, which is u + v there.  |n| <= |e1| |e2|,
 # |T| <= |n| |s| and |s| <= |d| + |P - a| make `bounds` of B no more than 1.25 eps |e1| |e2| times
 #     12 |P - a| + 4 |d| + 2 |P| + (4 + 3) (|d| + |P - a|)
-# and that of blur no more than 5 blur |n| / |s| times |d| + |P - a|.
+# and that of corner_error no more than 5 corner_error |n| / |s| times |d| + |P - a|.
 OF_NEAR, OF_LONGEST, OF_COORDINATES = np.float32(12 + 7), np.float32(4 + 7), np.float32(2)
-_ROW_B, _ROW_BLUR, _MORE = np.float32(1.26 * EPSILON), np.float32(5.01 / 11), np.float32(1.001)
+_ROW_B, _ROW_CORNER_ERROR, _MORE = np.float32(1.26 * EPSILON), np.float32(5.01 / 11), np.float32(1.001)
 
 
 @inlined
 def row_factors(t, f):
     """The factors of U, V and B in rows, of triangles as seen."""
     half_d = HALF * f.d
-    b = _ROW_B * (t.first * t.second) + _ROW_BLUR * t.blur * t.across / t.away
+    b = _ROW_B * (t.first * t.second) + _ROW_CORNER_ERROR * t.corner_error * t.across / t.away
     return _MORE * (f.u + half_d), _MORE * (f.v + half_d), b
 
 
 @inlined
 def row_bounds(u, v, b, longest, near, along, coordinates):
     """Bounds by the factors of a row, no narrower than those of `bounds`."""
+    longest = _if_known(longest)
     larger = LARGER * along + SMALL
     b = b * (OF_NEAR * near + OF_LONGEST * longest + OF_COORDINATES * coordinates) + SMALL
     return Functions(u * longest + larger, v * longest + larger, (u + v) * longest + larger, b)
@@ -311,11 +322,11 @@ def beside(most, m):
 
 @inlined
 def surely_hit(least, m):
-    """Whether rays surely hit triangles that are firm, beyond the lamp, for rays that are not too long."""
+    """Whether rays surely hit triangles whose sides are certain, beyond the lamp, for rays that are not too long."""
     return (least.b > m.b) & inside(least, m)
 
 
 @inlined
 def surely_missed(most, m):
-    """Whether rays surely miss triangles that are firm."""
+    """Whether rays surely miss triangles whose sides are certain."""
     return (most.b < -m.b) | beside(most, m)

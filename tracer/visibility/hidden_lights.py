@@ -1,6 +1,6 @@
 """Which lights is a box of space left with?  All but those that one triangle hides from every point of it.
 
-The tree of lights is descended.  The blockers that may hide a node are those that part its middle from that of the
+The tree of lights is descended.  The blockers that may hide a node are those that separate its middle from that of the
 box; those around what hid the last nodes are tried first, since a wall hides many.
 """
 

@@ -72,14 +72,14 @@ def put_light_space(rows, farthest, light, light_space):
         sure = minimum(sure_hit_length(farthest, numbers), minimum(t.height / t.across * _PAST, LARGE))
         low, high = reported_box(t, row)
         for axis in range(3):
-            store(columns + 64 * (U + axis), select(t.firm, t.u[axis], low[axis]))
-            store(columns + 64 * (V + axis), select(t.firm, t.v[axis], high[axis]))
+            store(columns + 64 * (U + axis), select(t.sure_side, t.u[axis], low[axis]))
+            store(columns + 64 * (V + axis), select(t.sure_side, t.v[axis], high[axis]))
             store(columns + 64 * (D + axis), t.d[axis])
             store(columns + 64 * (CORNER + axis), t.corner[axis])
         store(columns + 64 * OF_U, of_u)
         store(columns + 64 * OF_V, of_v)
         store(columns + 64 * BEHIND, of_b)
-        store(columns + 64 * FARTHEST, select(t.firm, sure, _NONE))
+        store(columns + 64 * FARTHEST, select(t.sure_side, sure, _NONE))
         for k in range(min(LANES, len(rows) - first)):
             for column in range(LIGHT_ROW):
                 light_space[first + k, column] = made[LANES * column + k]
@@ -148,7 +148,7 @@ def verdicts(t, light, direction, end):
     Rays go from light (3,) in a direction to their end, three vectors each; t are the columns of the primitives' rows:
     those of others for each ray (`load_columns`), or the same for all (`load_row`)."""
     hit, missed = judge(t, light, end, None, None)
-    missed, boxed = missed & (size_of(direction) < LARGE), t[FARTHEST] < ZERO
+    boxed = t[FARTHEST] < ZERO
     if any_lane(boxed):
         missed = missed | (boxed & segments_miss_box(light, direction, t[U:V], t[V:D]))
     return bits_of(hit), bits_of(missed)

@@ -109,11 +109,11 @@ def error_radius(row, t, farthest, rounded):
     """How far from each of sixteen triangles, as columns of their rows and as seen, a ray no longer than `farthest` can
     report a hit; `rounded` more, for what is computed with it."""
     # |D| enters the bounds by the same part of itself, whatever it is: that is added at the end.
-    m = bounds(factors_of(t), TWO * farthest, farthest, t.highest, ZERO)
+    m = bounds(factors_of(t), f32x16(TWO * farthest), farthest, t.highest, ZERO)
     depth = t.height - m.b
     part = maximum(m.u, maximum(m.v, m.w)) / depth + np.float32(1e-5)
-    apart = part * (t.first + t.second) + (m.b / depth + np.float32(1e-6)) * farthest + t.blur
-    apart = select(t.firm & (depth > ZERO), apart, FAR)
+    apart = part * (t.first + t.second) + (m.b / depth + np.float32(1e-6)) * farthest + t.corner_error
+    apart = select(t.sure_side & (depth > ZERO), apart, FAR)
 
     # No hit is reported outside of the primitive's box: how far is that from the triangle, along an axis?
     room = f32x16(ZERO)

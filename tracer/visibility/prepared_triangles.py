@@ -34,8 +34,8 @@ from tracer.visibility.shaft import box_outside, triangle_outside
 # lamp; |T| at least, and by how much it must differ from 0 for its sign to be certain; how long rays may be to be sure
 # of a hit; 1 where T's sign is the same for all of the lamp, 0 where it is not, -1 where float32 can tell nothing; how
 # far from the triangle a hit may be reported; and a box outside of which none is.
-(CORNER, FIRST, SECOND, TURNED_FIRST, TURNED_SECOND, U, V, D) = range(0, 24, 3)
-(OF_U, OF_V, OF_W, NEAR, FAR, FIXED, REACH, HEIGHT, UNSURE, SURE, FIRM, RADIUS, LOW) = range(24, 37)
+(CORNER, FIRST, SECOND, SIGNED_FIRST, SIGNED_SECOND, U, V, D) = range(0, 24, 3)
+(OF_U, OF_V, OF_W, NEAR, FAR, FIXED, REACH, HEIGHT, UNSURE, SURE, SURE_SIDE, RADIUS, LOW) = range(24, 37)
 HIGH = LOW + 3
 PREPARED = 64 * (HIGH + 3)  # bytes
 
@@ -59,8 +59,8 @@ def prepare(rows, farthest, lamp, numbers, made):
     store_three(made + 64 * CORNER, 64, t.corner)
     store_three(made + 64 * FIRST, 64, t.e1)
     store_three(made + 64 * SECOND, 64, t.e2)
-    store_three(made + 64 * TURNED_FIRST, 64, scaled(t.e1, t.turned))
-    store_three(made + 64 * TURNED_SECOND, 64, scaled(t.e2, t.turned))
+    store_three(made + 64 * SIGNED_FIRST, 64, scaled(t.e1, t.side))
+    store_three(made + 64 * SIGNED_SECOND, 64, scaled(t.e2, t.side))
     store_three(made + 64 * U, 64, t.u)
     store_three(made + 64 * V, 64, t.v)
     store_three(made + 64 * D, 64, t.d)
@@ -76,7 +76,7 @@ def prepare(rows, farthest, lamp, numbers, made):
     store(made + 64 * HEIGHT, t.height)
     store(made + 64 * UNSURE, t.unsure)
     store(made + 64 * SURE, sure_hit_length(farthest, numbers))
-    store(made + 64 * FIRM, select(t.firm, ONE, select(t.sane, ZERO, -ONE)))
+    store(made + 64 * SURE_SIDE, select(t.sure_side, ONE, select(t.in_range, ZERO, -ONE)))
 
     # The box in which hits are reported, with room for rounding.
     low, high = reported_box(t, row)

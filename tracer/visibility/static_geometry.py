@@ -15,7 +15,7 @@ from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.runtime.parallel import for_each_chunk
-from tracer.visibility.error_bounds import BLUR, BOX, LANES, LONGEST, ROW, SureHitLength
+from tracer.visibility.error_bounds import BOX, CORNER_ERROR, LANES, LONGEST, ROW, SureHitLength
 from tracer.visibility.light_space import LIGHT_ROW, OF_U
 from tracer.visibility.occluders import BOXES, ROUNDED, Occluders, blocks_of, enlarge_boxes, joined, shape_of
 
@@ -34,7 +34,7 @@ def put_rows(
     """Put the rows (n, ROW) of an object that is present (`error_bounds`), where it is now.
 
     They hold of one that rests until the extent of what moves has grown GROWTH times."""
-    triangles[:, :BLUR], triangles[:, BLUR], triangles[:, BOX:] = world.triangles_of(index)
+    triangles[:, :CORNER_ERROR], triangles[:, CORNER_ERROR], triangles[:, BOX:] = world.triangles_of(index)
     quadrics[:, BOX:] = outlines.boxes[world.primitives.quadrics_of(index)]
     room = 0.0
     if index > 0:
@@ -80,7 +80,7 @@ class StaticGeometry:
             self.allowed = min(self.allowed, GROWTH * self._world.extent)
         put_rows(self._world, index, outlines, self.rows[triangles], self.rows[quadrics])
         boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
-        self._shapes[index] = shape_of(self.rows[triangles, :BLUR], boxes, numbers, self._threads)
+        self._shapes[index] = shape_of(self.rows[triangles, :CORNER_ERROR], boxes, numbers, self._threads)
         self._bounds_of[index] = self._bounds(index)
 
     @property
@@ -103,7 +103,7 @@ class StaticGeometry:
 
         Boxes must have been fitted to the lights.  They are inverted for an object of nothing."""
         triangles, quadrics = self._rows_of(index)
-        boxes = triangle_boxes(self.rows[triangles, :BLUR]).astype(np.float64)
+        boxes = triangle_boxes(self.rows[triangles, :CORNER_ERROR]).astype(np.float64)
         fixed, result = self.rows[quadrics, BOX:], np.empty((len(lights), 6))
         for k, light in enumerate(lights):
             every = np.concatenate([boxes + self.occluders.error_radii[light, triangles, None] * OUTWARDS, fixed])

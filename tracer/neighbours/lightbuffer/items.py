@@ -57,8 +57,8 @@ from tracer.simd import (
     store,
 )
 from tracer.visibility.error_bounds import (
-    BLUR,
     BOX,
+    CORNER_ERROR,
     EPSILON,
     LAMP,
     LANES,
@@ -131,7 +131,7 @@ def _may_be_seen(rows, radii, light, face, numbers):
 
 @inlined
 def _turned(v, axes):
-    """A vector's components in the order of a face, the last turned its way."""
+    """A vector's components in the order of a face, the last with its sign."""
     return v[axes[0]], v[axes[1]], axes[3] * v[axes[2]]
 
 
@@ -192,12 +192,12 @@ def _put_span(span, row, away, radius, s, e1, e2, axes):
 def _put_functions(item, span, row, sure, farthest, s, e1, e2):
     """Put an item's functions, and whether it may cover anything; `sure` is how long rays may be to be sure of a hit,
     and `farthest` how long they are at most."""
-    n, blur = cross(e1, e2), np.float64(row[BLUR])
+    n, corner_error = cross(e1, e2), np.float64(row[CORNER_ERROR])
     facing = s[0] * n[0] + s[1] * n[1] + s[2] * n[2]
-    turned = 1.0 if facing >= 0.0 else -1.0
+    side = 1.0 if facing >= 0.0 else -1.0
     height, first, second, across, away = abs(facing), length(e1), length(e2), length(n), length(s)
-    longer, unsure = max(first, second), unsure_of_t(away, first, second, blur)
-    f = factors(first, second, longer, across, away, height, blur)
+    longer, unsure = max(first, second), unsure_of_t(away, first, second, corner_error)
+    f = factors(first, second, longer, across, away, height, corner_error)
     a, b = f.near * away + f.fixed + TINY, DIAGONAL * (f.near + f.far)
     span[COVERS] = 0.0
     if not (height > unsure and height > 2.0 * a and max(away, longer) < LARGE):
@@ -210,7 +210,7 @@ def _put_functions(item, span, row, sure, farthest, s, e1, e2):
 
     # U, V and D - U - V, all of a size that float32 can square.
     u, v, d = cross(e2, s), cross(s, e1), n
-    unit = turned / max(across * away, TINY)
+    unit = side / max(across * away, TINY)
     size = abs(unit)
     _put(item, U, u, unit)
     _put(item, V, v, unit)
@@ -220,7 +220,7 @@ def _put_functions(item, span, row, sure, farthest, s, e1, e2):
     item[OF_V] = size * (DIAGONAL * (f.v + common) + TINY)
 
     # The near and the far function.
-    scale = -turned / (height - a)
+    scale = -side / (height - a)
     _put(item, NEAR, d, scale)
     own = OWN * (abs(d[0]) + abs(d[1]) + abs(d[2])) * abs(scale)
     item[NEAR + 2] += b / (height - a) + own

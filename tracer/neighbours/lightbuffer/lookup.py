@@ -170,11 +170,11 @@ def _ask_records(cube, light, rays, n, first):
             t = load_columns(cube.records, codes, RECORD)
             near, far = _products(t, dx, dy, dz)
             following, left = as_i32(t[FIRST]), as_i32(t[COUNT])
-        sane = (square <= cube.reach) & (square >= least)
-        lit, blocked = sane & (near < ONE), sane & (far > ONE) & (square <= cube.sure)
+        in_reach = (square <= cube.reach) & (square >= least)
+        lit, blocked = in_reach & (near < ONE), in_reach & (far > ONE) & (square <= cube.sure)
         answer = select(blocked, np.int32(SHADOWED_RAY), select(lit, np.int32(LIT_RAY), i32x16(OPEN_RAY)))
         store(at, answer if first else select(mask16(there), answer, before))
-        some = mask16(there) & sane & ~lit & ~blocked & (left > np.int32(0))
+        some = mask16(there) & in_reach & ~lit & ~blocked & (left > np.int32(0))
         bits = bits_of(some)
         if bits != 0:
             a = 4 * asked
