@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracer.scene.animation import Chain, Keys, TrackSet
 from tracer.scene.arrays import Float64
@@ -146,8 +146,8 @@ def _triangle(one: SceneObject, place: int) -> list[str]:
         keys = np.stack([deformation.corners[place], deformation.normals[place]], axis=2)  # (keys, 3, 2, 3)
         return [f"tpa {len(times)}", *(f"{time} {_numbers(key)}" for time, key in zip(times, keys, strict=True))]
     corners, normals = one.triangles.corners[place], one.triangles.normals[place]
-    flat: NDArray[np.float32] = geometric_normals(corners[None])[0].astype(np.float32)
-    if (normals == flat).all():
+    as_read = np.array(_numbers(corners).split(), np.float64).reshape(1, 3, 3)
+    if (normals == geometric_normals(as_read).astype(np.float32)).all():
         return [f"p 3  {'  '.join(map(_numbers, corners))}"]
     return [f"pp 3  {'  '.join(f'{_numbers(c)} {_numbers(n)}' for c, n in zip(corners, normals, strict=True))}"]
 
