@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.sweeps import cases
 from tracer.editing.edits import Edits, edited
 from tracer.scene.aff_writer import aff_text
 from tracer.scene.load import load_scene
@@ -60,7 +61,7 @@ def check_same(one: Scene, other: Scene) -> None:
         assert one.name_of(number) == other.name_of(number)
 
 
-@pytest.mark.parametrize("name", ["figure4", "courtyard"])
+@pytest.mark.parametrize("name", cases(["figure4"], ["figure4", "courtyard", "default"]))
 def test_scenes_of_the_program(name: str, tmp_path: Path) -> None:
     scene = load_scene(embedded_scenes()[name])
     check_same(scene, again(scene, tmp_path))

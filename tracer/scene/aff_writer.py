@@ -123,6 +123,8 @@ def _geometry(scene: Scene, one: SceneObject, tracks: set[str]) -> Iterator[str]
     t, q = one.triangles, one.quadrics
     material = np.concatenate([t.material, q.material])
     part_of = one.part_of if one.part_of is not None else np.full(len(material), -1)
+    as_read = np.array(_numbers(t.corners).split(), np.float64).reshape(-1, 3, 3)
+    flat = (t.normals == geometric_normals(as_read)[:, None].astype(np.float32)).all(axis=(1, 2))
     last, opened = (-2, -1), False
     for place in range(len(material)):
         now = int(part_of[place]), int(material[place])
@@ -135,19 +137,19 @@ def _geometry(scene: Scene, one: SceneObject, tracks: set[str]) -> Iterator[str]
             yield f"fm {colors} {m.exponent / 4.0!r} {m.transmission!r} {m.ior!r}"
             yield from [f"x {name} {{"] if opened else []
             last = now
-        yield from _quadric(one, place - len(t)) if place >= len(t) else _triangle(one, place)
+        yield from _quadric(one, place - len(t)) if place >= len(t) else _triangle(one, place, bool(flat[place]))
     yield from ["}"] if opened else []
 
 
-def _triangle(one: SceneObject, place: int) -> list[str]:
+def _triangle(one: SceneObject, place: int, flat: bool) -> list[str]:
+    """The lines of a triangle; one that is `flat` has the normal that is read where none is given."""
     deformation = one.deformation
     if deformation is not None:
         times = deformation.times[place]
         keys = np.stack([deformation.corners[place], deformation.normals[place]], axis=2)  # (keys, 3, 2, 3)
         return [f"tpa {len(times)}", *(f"{time} {_numbers(key)}" for time, key in zip(times, keys, strict=True))]
     corners, normals = one.triangles.corners[place], one.triangles.normals[place]
-    as_read = np.array(_numbers(corners).split(), np.float64).reshape(1, 3, 3)
-    if (normals == geometric_normals(as_read).astype(np.float32)).all():
+    if flat:
         return [f"p 3  {'  '.join(map(_numbers, corners))}"]
     return [f"pp 3  {'  '.join(f'{_numbers(c)} {_numbers(n)}' for c, n in zip(corners, normals, strict=True))}"]
 
