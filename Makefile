@@ -12,7 +12,7 @@ RUN := .venv/bin/python
 PARALLEL := -n auto --maxprocesses 4 --dist worksteal
 QUICK := tests/test_house.py tests/test_golden.py tests/scene tests/experiments/test_zoom.py \
     $(addprefix tests/viewer/,cli/test_cli.py cli/test_mistakes.py views/test_legend.py state services window) \
-    $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py exact_methods.py) \
+    $(addprefix tests/tracing/test_,culling.py modes.py pictures.py intersect.py traversal.py waves.py) \
     -m "not slow"
 
 # Compiled kernels, Python's bytecode, Mesa's compiled shaders and matplotlib's list of fonts stay in the project's
