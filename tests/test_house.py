@@ -77,7 +77,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 25_232, "tracer": 41_101, "tests/viewer": 12_555, "tests": 37_560}
+MOST_LINES = {"viewer": 25_232, "tracer": 41_101, "tests/viewer": 12_555, "tests": 37_261}
 MOST_FILES = {"viewer": 167}
 
 
