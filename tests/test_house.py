@@ -77,7 +77,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 25_572, "tracer": 41_180, "tests/viewer": 12_660, "tests": 37_366}
+MOST_LINES = {"viewer": 25_572, "tracer": 41_180, "tests/viewer": 12_660, "tests": 37_314}
 MOST_FILES = {"viewer": 170}
 
 
