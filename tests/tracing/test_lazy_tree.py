@@ -16,8 +16,6 @@ from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.same import assert_same
 from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.accelerators import KD_TREE, LAZY
-from tracer.geometry.lazy_tree.hierarchy import LEAST, Hierarchy, hierarchy_over
-from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.queries import DYNAMIC_OBJECTS, EVERYTHING
 from tracer.geometry.rays import Rays
 from tracer.scene.model import Camera
@@ -66,33 +64,6 @@ def test_rays_that_ask_for_what_moves_enter_no_node_without() -> None:
     assert 0 < moving < everything / 4
     world.place(0.0, np.ones(5, np.bool_))
     assert not world.occluders_each(rays, DYNAMIC_OBJECTS)[1].any(), "all of it rests"
-
-
-def primitives_of(hierarchy: Hierarchy, group: int) -> list[int]:
-    first, count = int(hierarchy.first[group]), int(hierarchy.counts[group])
-    if first >= 0:
-        return list(range(first, first + count))
-    return [p for child in range(~first, ~first + count) for p in primitives_of(hierarchy, child)]
-
-
-@pytest.mark.parametrize("sizes", [[1], [16], [17], [5000], [3, 300, 1, 1, 40] * 9, [1] * 700])
-def test_groups_hold_whole_pieces_or_parts_of_one(sizes: list[int]) -> None:
-    rng, n = np.random.default_rng(0), sum(sizes)
-    corners = random_corners(rng, n + 7, 0.1)
-    starts = 7 + np.cumsum(sizes) - sizes
-    made = hierarchy_over(triangle_rows(corners), np.empty((0, 6), np.float32), starts, np.array(sizes))
-    groups = [primitives_of(made, group) for group in range(len(made.boxes))]
-    roots = groups[len(groups) - made.roots :]
-    assert sorted(p for group in roots for p in group) == list(range(7, n + 7)) and len(roots) <= 16
-    piece_of = np.repeat(np.arange(len(sizes)), sizes)
-    for group, box, weight in zip(groups, made.boxes, made.weights, strict=True):
-        assert weight == len(group)
-        inside = corners[group].reshape(-1, 3)
-        assert np.allclose(box, [*inside.min(0), *inside.max(0)], atol=1e-6)
-        pieces = np.unique(piece_of[np.array(group) - 7])
-        assert len(pieces) == 1 or len(group) == np.isin(piece_of, pieces).sum()
-    assert made.weights[: len(made.weights) - made.roots].min(initial=1) >= 1
-    assert made.counts[made.first >= 0].max() <= LEAST
 
 
 def test_memory_is_given_back() -> None:

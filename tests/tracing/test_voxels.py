@@ -48,7 +48,7 @@ def test_less_memory_means_larger_voxels():
 
 def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
     rng = np.random.default_rng(5)
-    for seed in range(12):
+    for seed in range(cases(5, 12)):
         walk = nasty_walk(seed)
         world = World(static_part(walk.scene))
         store = voxel_store(world, world.scene.light_positions(0.0))
