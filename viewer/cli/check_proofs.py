@@ -34,8 +34,14 @@ def parser() -> Parser:
 def run(given: Namespace) -> int:
     """Check; raises ValueError and OSError, each in one line, or Cancelled."""
     try:
-        checker = Checker(json.loads(given.proofs.read_text(encoding="utf-8")))
-    except (ValueError, RecursionError) as error:  # JSON's own among them
+        data = json.loads(given.proofs.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{given.proofs}: {error.strerror}") from None
+    except (ValueError, RecursionError):  # of bytes that are no text, too
+        raise ValueError(f"{given.proofs}: this is not JSON") from None
+    try:
+        checker = Checker(data)
+    except ValueError as error:
         raise ValueError(f"{given.proofs}: {error}") from None
     total = len(checker.proofs)
     most = min(given.most or total, total)
@@ -49,9 +55,11 @@ def run(given: Namespace) -> int:
             number = done * total // most
             proof = checker.proofs[number]
             answer = checker.check(proof)
-            held[proof[2]] += answer.holds
+            if answer.holds:
+                held[proof[2]] += 1
             if not answer.holds:
-                failed.append(f"proof {number} (cell {proof[0]}, light {proof[1]}, {proof[2]}): {answer.why}")
+                named = f"cell {proof[0]}, light {proof[1]}, {proof[2]}"
+                failed.append(f"proof {number} ({ascii(named)[1:61]}): {answer.why}")
     for line in failed[:SHOWN]:
         print(line)
     if len(failed) > SHOWN:

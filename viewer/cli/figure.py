@@ -31,7 +31,7 @@ maps of work. The counters are those of the kd-tree, ray by ray, unless --accele
 goes into certificates is among them. The figure carries how it was made: `shadowcull check` draws it again.
 
 A .html is one page, to be opened in a browser: a reader clicks pixels for their modes, what blocks their lights, their
-rays and each method's answer, chooses views and methods, and wipes between two.
+rays and each method's answer, chooses views and methods, none among them, and wipes between two. `check` takes it not.
 """
 
 
@@ -80,7 +80,7 @@ def run(given: Namespace) -> int:
         crops = tuple(Crop(*crop) for crop in given.crops)
         wanted = Comparison(tuple(given.methods), crops).checked(state.size)
         if explored:
-            explorable.check(*state.size)
+            explorable.check(*state.size, crops)
             state = state.with_settings(modes=True)
         options.warmup_times(scene, state.time, state.warmup.of_path, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, *wanted.methods)

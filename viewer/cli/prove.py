@@ -63,9 +63,13 @@ def run(given: Namespace) -> int:
         method = renderer.state.method(METHOD)
         if not isinstance(method, CertifiedCells) or method.store is None or frame.cells is None:
             raise ValueError(f"{given.path.name}: there are no cells; prove takes scenes of up to 31 lights")
+        if not method.store.certified.any():
+            raise ValueError(f"{given.path.name}: nothing is certified, as no light is a point that stands still")
         work.progress("writing the proofs", 1.0)
         seen = np.unique(frame.cells[frame.cells > 0]).tolist()
         proofs = as_json(method.store, seen, len(renderer.world.primitives.triangles))
+    if not proofs["proofs"]:
+        raise ValueError(f"{given.path.name}: nothing is certified of what is seen; trace frames before (--warmup N)")
     about = {"made_by": f"shadowcull {program_version()}", "scene": given.path.name, "time": time}
     write_text(given.output, json.dumps(about | proofs) + "\n")
     full = sum(proof["verdict"] == "full" for proof in proofs["proofs"])

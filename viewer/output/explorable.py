@@ -10,7 +10,7 @@ import base64
 import json
 import shlex
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,7 @@ from tracer.inspect.why_in_words import primitive_in_words
 from tracer.method import Method
 from tracer.scene.lights import named_light
 from viewer.output import commands
-from viewer.output.comparison import Shown
+from viewer.output.comparison import Crop, Shown
 from viewer.state.palette import FATES, OCCLUSION, SHADOW, Class, color_map
 from viewer.state.session import Session
 from viewer.state.views import Record
@@ -41,8 +41,10 @@ MOST_PIXELS, MOST_LIGHTS = 640 * 480, 8
 _BETWEEN = 1e-4  # of the way from a light: nearer to either end lies the lamp itself, or the surface that is asked
 
 
-def check(width: int, height: int) -> None:
-    """Raise ValueError, in one line, for a picture that makes too large a file."""
+def check(width: int, height: int, crops: Sequence[Crop] = ()) -> None:
+    """Raise ValueError, in one line, for a picture that makes too large a file, and for crops, which no page has."""
+    if crops:
+        raise ValueError("--crops: a page has none; give a .png or .pdf")
     if width * height > MOST_PIXELS:
         raise ValueError(f"{width} x {height} pixels make too large a file: {MOST_PIXELS:,} at most (--size)")
 
@@ -69,6 +71,7 @@ def page_data(shown: Shown, world: World) -> dict[str, Any]:
         "caption": shown.comparison.words or state.draw.caption,
         "command": shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)]),
         "note": f"{several(left_out, 'further light')} left out" if left_out else "",
+        "view": state.draw.view.value,
         "width": frame.width,
         "height": frame.height,
         "lights": [named_light(scene.lights, light) for light in range(lights)],

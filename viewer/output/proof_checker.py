@@ -22,6 +22,7 @@ import numpy as np
 Point = Sequence[Any]  # three numbers
 SHAFT_EDGES = [(0, k) for k in range(1, 7)] + [(1, 2), (2, 3), (3, 1), (4, 5), (5, 6), (6, 4), (1, 4), (2, 5), (3, 6)]
 FACES = [0, 1, 2, 3, 4, 5, 6, 9, 0, 1, 2], [1, 2, 0, 4, 5, 3, 7, 10, 12, 13, 14]  # pairs of edges in a face
+LARGEST = 1e30  # of numbers, so that products are finite
 BITS = 48  # of the normals of planes: any normal will do
 
 
@@ -58,8 +59,12 @@ class Checker:
             boxes = [_numbers(box, 6) for box in data["boxes"]]
             self.cells = [[_numbers(corner, 3) for corner in cell] for cell in data["cells"]]
             self.proofs = [(p["cell"], p["light"], p["verdict"], p["by"]) for p in data["proofs"]]
-        except (KeyError, TypeError, ValueError) as error:
+        except KeyError as error:
+            raise ValueError(f"these are no proofs: {error} is missing") from None
+        except (TypeError, ValueError, OverflowError) as error:
             raise ValueError(f"these are no proofs: {error}") from None
+        if not self.proofs:
+            raise ValueError("there are no proofs in it")
         every = [x for many in (self.lights, rows, boxes, *self.cells) for row in many for x in row]
         # The least power of two that makes integers of all numbers.
         self.scale = max((x.as_integer_ratio()[1] for x in every), default=1)
@@ -80,12 +85,14 @@ class Checker:
         """Check a proof."""
         cell, light, verdict, by = proof
         try:
-            start, corners = self.lights[light], self.cells[cell]
-            blockers = [self.triangles[k] for k in by]
+            start, corners = _of(self.lights, light), _of(self.cells, cell)
+            blockers = [_of(self.triangles, k) for k in by]
         except (IndexError, TypeError):
             return Answer(False, "it names what is not in the file")
-        if len(corners) != 6 or verdict not in ("full", "lit"):
-            return Answer(False, "it is neither of a prism that is hidden nor of one that is lit")
+        if len(corners) != 6:
+            return Answer(False, f"its cell has {len(corners)} corners in place of 6")
+        if verdict not in ("full", "lit"):
+            return Answer(False, "its verdict is neither full nor lit")
         return self._check_full(start, corners, blockers) if verdict == "full" else self._check_lit(start, corners)
 
     def _check_full(self, start: Point, corners: list, blockers: Iterable[tuple]) -> Answer:
@@ -108,6 +115,8 @@ class Checker:
         edges = np.array([shaft[i] - shaft[j] for i, j in SHAFT_EDGES])
         (low, high), faces = _bounds(shaft[None]), _unit(np.cross(edges[FACES[0]], edges[FACES[1]]))
         near = np.flatnonzero(((self._low <= high) & (self._high >= low)).all(1))
+        if not len(faces):
+            return Answer(False, "its cell and light span no space")
         best, gaps = _widest(faces, shaft, self._hulls[near])
         planes = [[round(x * (1 << BITS)) for x in normal] for normal in faces.tolist()]
         spans = [(min(dots), max(dots)) for dots in ([dot(n, p) for p in exact] for n in planes)]
@@ -116,7 +125,7 @@ class Checker:
                 self._exact_hulls[k] = _hull_of(tuple(map(self._exact, self._occluders[k])))
             hull = self._exact_hulls[k]
             ours, theirs = spans[face], [dot(planes[face], p) for p in hull]
-            if gap > 0.0 and (min(theirs) >= ours[1] or max(theirs) <= ours[0]):
+            if gap > 0.0 and (min(theirs) > ours[1] or max(theirs) < ours[0]):
                 continue
             if not self._separated(shaft, exact, edges, self._hulls[k], hull):
                 return Answer(False, "no plane is found between it and something that may hide the light")
@@ -127,10 +136,12 @@ class Checker:
         others = np.array([a - b for a, b in combinations(hull, 2)])
         tried = [np.cross(edges[:, None], others[None]).reshape(-1, 3), np.cross(others[:1], others[1:])]
         normals = _unit(np.concatenate([*tried, np.cross(edges[FACES[0]], edges[FACES[1]])]))
+        if not len(normals):
+            return False
         best, _gap = _widest(normals, shaft, hull[None])
         n = [round(x * (1 << BITS)) for x in normals[best[0]].tolist()]
         ours, theirs = [dot(n, p) for p in exact], [dot(n, p) for p in hull_exact]
-        return max(ours) <= min(theirs) or max(theirs) <= min(ours)
+        return max(ours) < min(theirs) or max(theirs) < min(ours)
 
 
 def _unit(normals: np.ndarray) -> np.ndarray:
@@ -155,10 +166,21 @@ def _hull_of(occluder: tuple) -> list[tuple]:
 
 
 def _numbers(row: Any, count: int) -> tuple[float, ...]:
+    if not isinstance(row, list) or len(row) != count or not all(type(x) in (int, float) for x in row):
+        raise ValueError(f"not {count} numbers: {ascii(row)[:60]}")
     found = tuple(float(x) for x in row)
-    if len(found) != count or not all(abs(x) < float("inf") for x in found):
-        raise ValueError(f"not {count} numbers: {str(row)[:60]}")
+    if not all(abs(x) <= LARGEST for x in found):
+        raise ValueError(f"numbers beyond {LARGEST:g}: {ascii(row)[:60]}")
     return found
+
+
+def _of(things: list, number: Any) -> Any:
+    """The thing of a number; raises IndexError or TypeError for what is none."""
+    if type(number) is not int:
+        raise TypeError(number)
+    if number < 0:
+        raise IndexError(number)
+    return things[number]
 
 
 def _bounds(hulls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

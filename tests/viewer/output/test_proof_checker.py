@@ -67,7 +67,7 @@ def test_cells_are_not_lit_where_something_is_put_in_the_way(proofs: dict[str, A
         light, corners = np.array(proofs["lights"][proof["light"]]), np.array(proofs["cells"][proof["cell"]])
         middle = light + rng.uniform(0.1, 0.9) * (rng.dirichlet(np.ones(6)) @ corners - light)
         e1, e2 = 1e-4 * rng.normal(size=(2, 3))
-        row = [*(middle - (e1 + e2) / 3), *e1, *e2]
+        row = np.concatenate([middle - (e1 + e2) / 3, e1, e2]).tolist()
         blocked = proofs | {"triangles": [*proofs["triangles"], row], "proofs": [proof]}
         assert holding(blocked) == [False]
 
@@ -83,14 +83,17 @@ def test_triangles_hide_together_what_none_hides_alone() -> None:
         return holding(data | {"triangles": triangles, "proofs": [proof]})[0]
 
     assert hold([0, 1]) and hold([1, 0]) and not hold([0]) and not hold([1]) and not hold([])
-    slit = [halves[0], [*np.add(halves[1][:3], [0.5, 0.0, 0.0]), *halves[1][3:]]]
+    slit = [halves[0], [halves[1][0] + 0.5, *halves[1][1:]]]
     assert not hold([0, 1], slit)
 
 
 @pytest.mark.parametrize(
     "text",
     ["", "[]", "{}", "[" * 100_000, '{"lights": [[1, 2]], "triangles": [], "boxes": [], "cells": [], "proofs": []}',
-     '{"lights": [[1, 2, NaN]], "triangles": [], "boxes": [], "cells": [], "proofs": []}'],
+     '{"lights": [[1, 2, NaN]], "triangles": [], "boxes": [], "cells": [], "proofs": []}',
+     '{"lights": [["1", 2, 3]], "triangles": [], "boxes": [], "cells": [], "proofs": []}',
+     '{"lights": [[1, 2, 1' + 400 * "0" + ']], "triangles": [], "boxes": [], "cells": [], "proofs": []}',
+     '{"lights": [], "triangles": [], "boxes": [], "cells": [], "proofs": []}'],
 )  # fmt: skip
 def test_what_is_no_proof_is_one_line(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "bad.json"
@@ -100,6 +103,24 @@ def test_what_is_no_proof_is_one_line(text: str, tmp_path: Path, capsys: pytest.
     assert "bad.json" in line and "a bug" not in line
 
 
+def test_what_only_touches_is_in_the_way() -> None:
+    """A triangle that segments lie in, and a cell of no extent inside of a triangle."""
+    flat, light = 2 * [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0, 0.0, 10.0]
+    within = [0.0, -5.0, 5.0, 0.0, 10.0, 0.0, 0.0, 0.0, 1.0]
+    lit = {"cell": 0, "light": 0, "verdict": "lit", "by": []}
+    data = {"lights": [light], "triangles": [within], "boxes": [], "cells": [flat], "proofs": [lit]}
+    assert holding(data) == [False]
+    assert holding(data | {"cells": [6 * [[0.0, 0.0, 5.2]]]}) == [False]
+
+
+def test_a_frame_of_which_nothing_is_certified_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lamps = ["--lamp-radius", "0.1", "--lamp-samples", "16"]
+    assert main(["prove", "figure3", "-o", str(tmp_path / "p.json"), "--size", "32x24", *lamps]) == 1
+    assert "no light is a point" in capsys.readouterr().err.strip().splitlines()[-1]
+    assert not (tmp_path / "p.json").exists()
+
+
 def test_names_that_are_not_there_do_not_hold(proofs: dict[str, Any]) -> None:
-    for wrong in ({"cell": 10**9}, {"light": "x"}, {"verdict": "dark"}, {"by": [10**9], "verdict": "full"}, {"by": 3}):
+    by = [{"by": [10**9]}, {"by": [-1]}, {"by": 3}]
+    for wrong in ({"cell": 10**9}, {"cell": -1}, {"light": True}, {"light": "x"}, {"verdict": ["lit"]}, *by):
         assert holding(proofs | {"proofs": [proofs["proofs"][0] | {"verdict": "full"} | wrong]}) == [False]
