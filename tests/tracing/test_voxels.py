@@ -112,7 +112,7 @@ def test_a_wall_hides_the_voxels_behind_it_and_no_others():
     points = (rng.random((4000, 3)) * (4.0, 3.0, 1.6) - (0, 0, 1.8)).astype(np.float32)
     crossed = crossed_by(rows, light[0], points.astype(np.float64))
     for point, hidden in zip(points, crossed, strict=True):
-        seen[bool(hidden), store.state_at(point, 0)] += 1
+        seen[bool(hidden), store.describe(0, point, 0)[0]] += 1
     assert seen[True, "lit"] == seen[False, "full"] == 0
     assert seen[True, "full"] > seen[True, "none"] and seen[False, "lit"] > 8 * seen[False, "none"], seen
 
@@ -171,7 +171,7 @@ def test_a_light_that_moves_is_classified_anew_and_others_are_not():
     store, fresh = voxel_store(world, places), voxel_store(world, moved)
     table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(2)))
     store.update(table.at(moved), nothing_rests(1))
-    assert store.state_at(np.array([1, 1, 0], np.float32), 1) == "none"
+    assert store.describe(0, np.array([1, 1, 0], np.float32), 1)[0] == "none"
     assert not shadow_mode(store.words, 1).any() and shadow_mode(store.words, 0).any()
     made = store.classify(np.inf, 2).certificates
     assert 0 < made < fresh.grid.cubes

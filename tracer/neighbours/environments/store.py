@@ -101,15 +101,13 @@ class EnvironmentStore:
         codes = 4 * self.held * self.tree.count
         return self.tree.bytes + codes + 4 * self._named + self.further.bytes
 
-    def keep_within(self) -> None:
-        """Forget all cells where they take more than half of the memory."""
-        if self._cell_bytes > self._memory / 2:
-            self._begin_cells()
-
     # Following what moves.
 
     def update(self, lamps: Lamps, resting: Resting) -> None:
-        """Lights are where these lamps have them now, and this rests."""
+        """Lights are where these lamps have them now, and this rests.  Where cells take more than half of the memory, all
+        are forgotten."""
+        if self._cell_bytes > self._memory / 2:
+            self._begin_cells()
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.frame.per_unit > ROOM / 4
         moved = (lamps.places != self.places).any(1)
         held = moved[: self.held].copy()
@@ -325,7 +323,7 @@ class EnvironmentStore:
             f"There is memory for the blockers of {self.held} lights; of {lacking} more only what hides them is known."
         )
 
-    def state_at(self, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+    def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
         """What is known of a light in the cell of a point (3,), and its blockers there: "full", "lit", "candidates" or
         "none", the words that certificates have."""
         cell = self.tree.leaf_at(point)

@@ -157,9 +157,11 @@ class RegionStore:
             self.hidden.moved,
         )
 
-    def hidden_by(self, point: NDArray[np.float32], light: int) -> int:
-        """The number of the triangle that hides a light from the region of a point (3,); -1 for none."""
+    def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        """Whether a triangle hides a light from the region of a point (3,): "full", and its number, or "none"."""
         number = cube_at(self.grid, point)
-        if number < 0 or self.hidden.moved[light]:
-            return -1
-        return self.hidden.hidden_by(region_boxes(self.grid, np.array([number]))[0], light)
+        if number >= 0 and not self.hidden.moved[light]:
+            hider = self.hidden.hidden_by(region_boxes(self.grid, np.array([number]))[0], light)
+            if hider >= 0:
+                return "full", (hider,)
+        return "none", ()

@@ -192,12 +192,12 @@ class VoxelStore:
             cell,
         )
 
-    def state_at(self, point: NDArray[np.float32], light: int) -> str:
-        """What is known of a light in the voxel of a point (3,): one of STATES."""
+    def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        """What is known of a light in the voxel of a point (3,): one of STATES.  It names no primitives."""
         number = cube_at(self.grid, point)
         if number < 0 or not 0 <= light < len(self.places) or np.isnan(self.places[light, 0]):
-            return STATES[0]
-        return STATES[int(shadow_mode(self.words[number], light))]
+            return STATES[0], ()
+        return STATES[int(shadow_mode(self.words[number], light))], ()
 
     def shown(self) -> VoxelStates:
         """The voxels and their states as they are now, for pictures to hold; the same until anything changes."""
