@@ -48,7 +48,7 @@ from tracer.neighbours.certified.journal import Journal
 from tracer.neighbours.certified.quadtree import part_of
 from tracer.neighbours.certified.requests import Requests
 from tracer.neighbours.certified.tasks import KEPT, commit, make_tasks, run_tasks, tasks_in
-from tracer.neighbours.certified.view import CertificateView, LampsView, RequestRows
+from tracer.neighbours.certified.view import CertificateView, LampsView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.occluders import FAR, Occluders
@@ -320,7 +320,7 @@ class CertificateStore:
             costly_rays=model.costly_rays,
             stride=stride,
             first_vector=self._frame % stride,
-            requests=RequestRows(*requests),
+            requests=requests,
             cell=cell,
         )
 

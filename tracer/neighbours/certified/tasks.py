@@ -34,6 +34,7 @@ from tracer.neighbours.certified.certify import MOST, certify
 from tracer.neighbours.certified.gather_requests import facing_lights
 from tracer.neighbours.certified.quadtree import part_of, place_of_part
 from tracer.runtime.kernels import inlined, kernel, subkernel
+from tracer.simd import i64_at, local_memory
 from tracer.visibility.error_bounds import dot, row_of
 from tracer.visibility.shaft import put_light
 
@@ -97,32 +98,21 @@ def _part(cells, cell, u, v):
 @subkernel
 def _sort_points(cells, cell, points, first, last, parts):
     """Sort requests first to last - 1 by the parts of a cell, in place; where they begin, into parts (5,)."""
+    following = i64_at(local_memory(32))  # where the next request of each part goes
     for k in range(5):
         parts[k] = 0
     for i in range(first, last):
+        points.spare[0, i], points.spare[1, i] = points.u[i], points.v[i]
         parts[1 + _part(cells, cell, points.u[i], points.v[i])] += 1
     parts[0] = first
     for k in range(4):
+        following[k] = parts[k]
         parts[k + 1] += parts[k]
-    n0, n1, n2, n3 = parts[0], parts[1], parts[2], parts[3]
-    for i in range(first, last):
-        points.spare[0, i], points.spare[1, i] = points.u[i], points.v[i]
     for i in range(first, last):
         u, v = points.spare[0, i], points.spare[1, i]
         k = _part(cells, cell, u, v)
-        if k == 0:
-            at = n0
-            n0 += 1
-        elif k == 1:
-            at = n1
-            n1 += 1
-        elif k == 2:
-            at = n2
-            n2 += 1
-        else:
-            at = n3
-            n3 += 1
-        points.u[at], points.v[at] = u, v
+        points.u[following[k]], points.v[following[k]] = u, v
+        following[k] += 1
 
 
 @inlined

@@ -24,7 +24,7 @@ from tracer.neighbours.environments.tree import CellTree, lengthened, room_for
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.box_candidates import MOST, Light, light_to
-from tracer.visibility.budget import CERTIFICATES, COUNTERS, STEPS, TESTS, Counts
+from tracer.visibility.budget import COUNTERS, Counts
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.grid import DIGITS
 from tracer.visibility.static_geometry import NEVER_HIT, StaticGeometry, without_area
@@ -104,8 +104,8 @@ class EnvironmentStore:
     # Following what moves.
 
     def update(self, lamps: Lamps, resting: Resting) -> None:
-        """Lights are where these lamps have them now, and this rests.  Where cells take more than half of the memory, all
-        are forgotten."""
+        """Lights are where these lamps have them now, and this rests.  All cells are forgotten where they take more than half
+        of the memory."""
         if self._cell_bytes > self._memory / 2:
             self._begin_cells()
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.frame.per_unit > ROOM / 4
@@ -182,8 +182,7 @@ class EnvironmentStore:
                 self._settle(cells, method, counts, cancel)
                 if self._clock() >= until:
                     break
-        steps, tests, made = (int(counts[:, k].sum()) for k in (STEPS, TESTS, CERTIFICATES))
-        return Counts(steps, tests, made)
+        return Counts(*counts.sum(0).tolist())
 
     def _prove(self, counts: NDArray[np.int64], cancel: Callable[[], bool] | None) -> Settle:
         def proved(

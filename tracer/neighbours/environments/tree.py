@@ -69,16 +69,7 @@ class CellTree:
 
     def leaf_at(self, point: NDArray[np.float32]) -> int:
         """The leaf in which a point (3,) lies; OUTSIDE for none."""
-        frame = self.frame
-        at = np.floor((point.astype(np.float64) - (frame.x, frame.y, frame.z)) * frame.per_unit)
-        if not ((at >= 0) & (at < 2**frame.levels)).all():
-            return OUTSIDE
-        cell, (i, j, k) = ROOT, at.astype(np.int64).tolist()
-        for level in range(frame.levels - 1, -1, -1):
-            if self.child[cell] == 0:
-                break
-            cell = int(self.child[cell]) + 4 * (i >> level & 1) + 2 * (j >> level & 1) + (k >> level & 1)
-        return cell
+        return int(self.leaves_at(point[None])[0])
 
     def leaves_at(self, points: NDArray[np.float32]) -> NDArray[np.int64]:
         """The leaves (n,) in which points (n, 3) lie, OUTSIDE for none."""

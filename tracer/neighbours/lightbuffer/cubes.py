@@ -22,7 +22,7 @@ from tracer.neighbours.lightbuffer.divide import (
     RECORDS_USED,
     divide_face,
 )
-from tracer.neighbours.lightbuffer.items import find_error_radii, put_items, put_rows_of_light
+from tracer.neighbours.lightbuffer.items import put_error_radii, put_items, put_rows_of_light
 from tracer.neighbours.lightbuffer.shapes import COUNT, FIRST, ITEM, RECORD, SPAN, WIDTH_BITS
 from tracer.runtime.parallel import for_each_chunk
 from tracer.visibility.error_bounds import BOX, LANES, LONGEST, ROW, SureHitLength
@@ -153,7 +153,7 @@ class CubeMaker:
 
         def find_radii(k: int, worker: int) -> None:
             rounded = ROUNDED * (self._items.largest + float(np.abs(lights[k]).max()))
-            find_error_radii(rows, lights[k], reaches[k], rounded, radii[k])
+            put_error_radii(rows, lights[k], reaches[k], rounded, radii[k])
 
         def divide(chunk: int, worker: int) -> None:
             k, face = divmod(chunk, FACES)

@@ -71,11 +71,10 @@ from tracer.visibility.error_bounds import (
     factors,
     length,
     rows_at,
-    seen_from,
     unsure_of_t,
 )
 from tracer.visibility.light_space import put_light_space
-from tracer.visibility.occluders import error_radius
+from tracer.visibility.occluders import find_error_radii
 
 DIAGONAL = 1.733  # of a cube whose edge is 2: half of it
 OWN = 32 * EPSILON  # of all coefficients, by which a plane in float32 may be wrong
@@ -86,15 +85,10 @@ _WIDE, _ROUNDING = 2 * REPORTED, 1e-6
 
 
 @kernel
-def find_error_radii(rows, light, farthest, rounded, radii):
+def put_error_radii(rows, light, farthest, rounded, radii):
     """How far from each of rows (n, ROW) rays from light (3,), no longer than `farthest`, report hits, into radii
     (n rounded up to LANES,) float32."""
-    numbers, place = local_memory(64), (light[0], light[1], light[2])
-    for first in range(0, len(rows), LANES):
-        store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
-        row = rows_at(rows, numbers)
-        t = seen_from(place, ZERO, row)
-        store(address_of(radii) + 4 * first, error_radius(row, t, np.float32(farthest), np.float32(rounded)))
+    find_error_radii(rows, light, ZERO, farthest, rounded, radii)
 
 
 @kernel

@@ -25,7 +25,7 @@ from tracer.neighbours.voxels.view import VoxelView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.box_candidates import light_to
-from tracer.visibility.budget import CERTIFICATES, COUNTERS, STEPS, TESTS, Counts
+from tracer.visibility.budget import COUNTERS, Counts
 from tracer.visibility.error_bounds import BOX, LANES, REPORTED
 from tracer.visibility.grid import DIGITS, Grid, cube_at
 from tracer.visibility.light_space import FARTHEST, LIGHT_ROW
@@ -124,8 +124,7 @@ class VoxelStore:
             self._classify(int(light), threads, counts, cancel)
         if not self._listed:
             self._list_contents()
-        steps, tests, made = (int(counts[:, k].sum()) for k in (STEPS, TESTS, CERTIFICATES))
-        return Counts(steps, tests, made)
+        return Counts(*counts.sum(0).tolist())
 
     def _classify(self, light: int, threads: int, counts: NDArray[np.int64], cancel: Callable[[], bool] | None) -> None:
         geometry, grid, place = self._geometry, self.grid, self._wanted[light].copy()
