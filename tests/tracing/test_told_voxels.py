@@ -89,16 +89,15 @@ def test_cells_ask_all_lights_but_those_that_they_know_to_be_hidden():
         cells = np.array([store.tree.leaf_at(point) for point in points], np.int32)
         asked = store.asked_in(cells)
         for cell, number in zip(cells.tolist(), asked.tolist(), strict=True):
-            listed = set(
-                store.further.lights[max(store.further.first[cell], 0) : max(store.further.last[cell], 0)].tolist()
-            )
+            (starts, lights), of = store.further.lists.arrays(), store.further.of[cell]
+            listed = set(lights[starts[of - 1] : starts[of]].tolist()) if of > 0 else set()
             expected = 0
             for light in range(len(lamps.places)):
                 known = store._known[light]
                 if light < store.held:
                     looks = not known or store.codes[cell, light] != HIDDEN or light in listed
                 else:
-                    looks = not known or store.further.first[cell] < 0 or light in listed
+                    looks = not known or of == 0 or light in listed
                 expected += looks
             assert number == expected, (seed, cell)
             fewer += number < len(lamps.places)

@@ -198,6 +198,33 @@ class HiddenLights:
         return int(self.blockers.numbers[blocker]) if blocker >= 0 else -1
 
 
+class LightLists:
+    """Lists of lights, numbered from 1 on in the order in which they are added."""
+
+    def __init__(self) -> None:
+        self._starts, self._lights = [np.zeros(1, np.int64)], [np.empty(0, np.int32)]
+        self._count = 0
+
+    def add(self, lists: list[NDArray[np.int32]]) -> NDArray[np.int64]:
+        """Add lists (k,); their numbers."""
+        if lists:
+            self._starts.append(self._starts[-1][-1] + np.cumsum([len(lights) for lights in lists]))
+            self._lights.append(np.concatenate(lists))
+        self._count += len(lists)
+        return self._count - len(lists) + 1 + np.arange(len(lists))
+
+    @property
+    def bytes(self) -> int:
+        """Memory that lists take, in bytes."""
+        return sum(a.nbytes for arrays in (self._starts, self._lights) for a in arrays)
+
+    def arrays(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """(starts (n + 1,), lights (m,)): list k has the lights from starts[k - 1] to starts[k] - 1."""
+        if len(self._starts) > 1:
+            self._starts, self._lights = [np.concatenate(self._starts)], [np.concatenate(self._lights)]
+        return self._starts[0], self._lights[0]
+
+
 def _bounds(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
     """Lower and upper corner (2, 3) around triangles (t, 9), corner and two edges."""
     if not len(triangles):

@@ -58,12 +58,12 @@ def select_lights(environments, count, cells):
             for light in range(held):
                 if environments.codes[cell * held + light] != HIDDEN:
                     looks[light, word] |= bit
-            first = environments.first[cell]
-            if first < 0:
+            which = environments.of[cell]
+            if which == 0:
                 for light in range(held, lights):
                     looks[light, word] |= bit
             else:
-                for k in range(first, environments.last[cell]):
+                for k in range(environments.starts[which - 1], environments.starts[which]):
                     looks[environments.lights[k], word] |= bit
 
 

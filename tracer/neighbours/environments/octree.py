@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tracer.runtime.kernels import inlined
 from tracer.simd import address_of, bits_of, gather_i32x16, i32x16, select
-from tracer.simd.records import I32, Bytes, F32x2D, F32x3D, I64x2D, reading
+from tracer.simd.records import I32, I64, Bytes, F32x2D, F32x3D, I64x2D, reading
 from tracer.visibility.grid import DIGITS, SHIFT, indices, place_of, within
 
 LEVELS = 8  # of the octree below its root, at most
@@ -49,9 +49,9 @@ class EnvironmentView(NamedTuple):
         codes: (cells * held lights,) int32, of each cell and light.
         held: how many lights, the first ones, have codes.
         names: (m,) int32, numbers of primitives.
-        first, last: (cells,) int32, where the further lights that may shine into a cell begin and end in `lights`;
-            first is negative for cells of which that is not known.
-        lights: (k,) int32, numbers of lights.
+        of: (cells,) int32, the number of the list of the further lights that may shine into a cell, 0 where that is not
+            known.
+        starts, lights: (n + 1,) int64 and (k,) int32, these lists (`tracer.visibility.hidden_lights.LightLists`).
         light_space: (held lights, primitives, LIGHT_ROW) float32 (`tracer.visibility.light_space`).
         known: (lights,) bool, lights that stand where codes have them.
         resting: (k, 6) float32, boxes around what rests now.
@@ -67,8 +67,8 @@ class EnvironmentView(NamedTuple):
     codes: I32
     held: int
     names: I32
-    first: I32
-    last: I32
+    of: I32
+    starts: I64
     lights: I32
     light_space: F32x3D
     known: Bytes

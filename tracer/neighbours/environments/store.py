@@ -104,8 +104,9 @@ class EnvironmentStore:
     # Following what moves.
 
     def update(self, lamps: Lamps, resting: Resting) -> None:
-        """Lights are where these lamps have them now, and this rests.  All cells are forgotten where they take more than half
-        of the memory."""
+        """Lights are where these lamps have them now, and this rests.
+
+        All cells are forgotten where they take more than half of the memory."""
         if self._cell_bytes > self._memory / 2:
             self._begin_cells()
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.frame.per_unit > ROOM / 4
@@ -229,7 +230,7 @@ class EnvironmentStore:
             tree.divide(cells[worth & (tree.cells[cells, 3] > self.finest)])
             if tree.room > len(self.codes):
                 self.codes = lengthened(self.codes, tree.room, UNKNOWN)
-                self.further.grow(tree.room)
+                self.further.of = lengthened(self.further.of, tree.room, 0)
 
     def _keep(self, codes: NDArray[np.int32], found: NDArray[np.int32]) -> NDArray[np.int32]:
         """Add lists of blockers to the names; codes (n,) are how many of found (n, MOST) each has, then where its list
@@ -258,9 +259,8 @@ class EnvironmentStore:
             self.codes.reshape(-1),
             self.held,
             self.names,
-            self.further.first,
-            self.further.last,
-            self.further.lights,
+            self.further.of,
+            *self.further.lists.arrays(),
             self.geometry.occluders.light_space,
             self._known.copy(),
             self._resting,
@@ -271,19 +271,13 @@ class EnvironmentStore:
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """What is known of cells, of any shape, as words like those of `tracer.neighbours.certified.cells`."""
-        word, many, further = word_type(len(self.places)), self.tree.count, self.further
-        words = np.full(many, FULLY_RENDERED, word)
-        # Lists of the lights that are not held, some of them shared, and to which each number belongs.
-        first, last = further.first[:many].astype(np.int64), further.last[:many]
-        _, one, which = np.unique(2 * first + (last > first), return_index=True, return_inverse=True)
-        owner = np.repeat(np.arange(len(one)), np.maximum(last[one] - first[one], 0))
+        word, every = word_type(len(self.places)), np.arange(self.tree.count)
+        words = np.full(len(every), FULLY_RENDERED, word)
         for light in range(min(len(self.places), MAX_CULLED_LIGHTS)):
-            if light in further.numbers:
-                full = (first[one] >= 0) & self._known[light]
-                full[owner[further.lights[: len(owner)] == light]] = False
-                state = np.where(full[which], FULL_SHADOW, 0)
+            if light in self.further.numbers:
+                state = np.where(self.further.hides(every, light) & self._known[light], FULL_SHADOW, 0)
             elif light < self.held:
-                code = self.codes[:many, light]
+                code = self.codes[every, light]
                 state = np.select([code == HIDDEN, code == LIT, code > LIT], [FULL_SHADOW, NON_SHADOW, CANDIDATES], 0)
             else:
                 continue
@@ -298,16 +292,9 @@ class EnvironmentStore:
         known, held = self._known, self.held
         asked = ((self.codes[one] != HIDDEN) | ~known[:held]).sum(1)
         if len(known) > held:
-            first, last = (
-                np.maximum(ends[one], 0).astype(np.int64) for ends in (self.further.first, self.further.last)
-            )
-            left = last - first
-            if len(self.further.numbers) < len(known) - held or not known.all() or self.further.numbers[0] < held:
-                # Lights that are held are counted, and so are all that have moved.
-                lists = self.further.lights[: self.further.used]
-                before = np.concatenate([[0], np.cumsum((lists >= held) & known[lists])])
-                left = before[last] - before[first] + int((~known[held:]).sum())
-            asked += np.where(self.further.first[one] < 0, len(known) - held, left)
+            # Lights that are held are counted, and so are all that have moved.
+            left = self.further.counted(one, known & (np.arange(len(known)) >= held)) + int((~known[held:]).sum())
+            asked += np.where(self.further.of[one] == 0, len(known) - held, left)
         asked[one == OUTSIDE] = len(known)
         found = asked.astype(np.int32)[which].reshape(cells.shape)
         return np.where(cells < 0, np.int32(-1), found)
@@ -327,7 +314,7 @@ class EnvironmentStore:
         "none", the words that certificates have."""
         cell = self.tree.leaf_at(point)
         if light in self.further.numbers:
-            return ("full" if self._known[light] and self.further.hides(cell, light) else "none"), ()
+            return ("full" if self._known[light] and self.further.hides(np.array([cell]), light)[0] else "none"), ()
         code = int(self.codes[cell, light]) if light < self.held else UNKNOWN
         if code > LIT:
             return "candidates", tuple(self.names[code + 1 : code + 1 + self.names[code]].tolist())

@@ -14,7 +14,7 @@ from tracer.scene.lights import Lamps
 from tracer.simd.records import I32, I64, Bytes, F32x2D
 from tracer.visibility.budget import COUNTERS, STEPS, TESTS, Budget, Counts
 from tracer.visibility.grid import Grid, cube_at
-from tracer.visibility.hidden_lights import HiddenLights, boxes_of_samples
+from tracer.visibility.hidden_lights import HiddenLights, LightLists, boxes_of_samples
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -68,14 +68,12 @@ class RegionStore:
         # Memory that nobody has touched is not taken.
         self.certified, self.wanted = np.zeros(self.grid.cubes, np.int32), np.zeros(self.grid.cubes, np.bool_)
         self._blocks: dict[int, Block] = {}
-        self._starts, self._lights = [np.zeros(1, np.int64)], [np.empty(0, np.int32)]
-        self._lists = 0
+        self._lists = LightLists()
 
     @property
     def bytes(self) -> int:
         """Memory that lists take, in bytes."""
-        blocks = [block.leaves for block in self._blocks.values()]
-        return sum(a.nbytes for arrays in (self._starts, self._lights, blocks) for a in arrays)
+        return self._lists.bytes + sum(block.leaves.nbytes for block in self._blocks.values())
 
     def update(self, lamps: Lamps) -> None:
         """Lights are where these lamps have them now."""
@@ -98,7 +96,7 @@ class RegionStore:
             alone = np.flatnonzero(shared == 0)
             above = [known[k].leaves for k in alone]
             leaves = self.hidden.descend(region_boxes(self.grid, regions[alone]), above, threads, counts, cancel)
-            self.certified[regions[alone]] = self._add(leaves)
+            self.certified[regions[alone]] = self._lists.add([self.hidden.lights_below(found) for found in leaves])
             self.wanted[regions] = False
             made += len(regions)
             batch = min(MOST, 2 * batch)
@@ -126,17 +124,9 @@ class RegionStore:
         left = self.hidden.descend(region_boxes(self.grid, examples), above, threads, counts, cancel)
         fewest = np.array([len(leaves) for leaves in left]).reshape(-1, 3).min(1)
         for number, leaves, least in zip(numbers.tolist(), of_blocks, fewest.tolist(), strict=True):
-            shared = int(self._add([leaves])[0]) if least > HARDLY * len(leaves) else 0
+            shares = [self.hidden.lights_below(leaves)] if least > HARDLY * len(leaves) else []
+            shared = int(self._lists.add(shares).sum())
             self._blocks[number] = Block(leaves, shared)
-
-    def _add(self, leaves: list[NDArray[np.int32]]) -> NDArray[np.int64]:
-        """Make lists of the lights of these leaves; what `RegionView.certified` calls them."""
-        lists = [self.hidden.lights_below(found) for found in leaves]
-        if lists:
-            self._starts.append(self._starts[-1][-1] + np.cumsum([len(lights) for lights in lists]))
-            self._lights.append(np.concatenate(lists))
-        self._lists += len(lists)
-        return self._lists - len(lists) + 1 + np.arange(len(lists))
 
     def keep_within(self, most: float) -> None:
         """Forget all lists where they take more than `most` bytes."""
@@ -145,17 +135,8 @@ class RegionStore:
 
     def view(self) -> RegionView:
         """What kernels are given now."""
-        if len(self._starts) > 1:
-            self._starts, self._lights = [np.concatenate(self._starts)], [np.concatenate(self._lights)]
-        return RegionView(
-            self.grid,
-            self.certified,
-            self.wanted,
-            self._starts[0],
-            self._lights[0],
-            self.hidden.boxes,
-            self.hidden.moved,
-        )
+        lists = self._lists.arrays()
+        return RegionView(self.grid, self.certified, self.wanted, *lists, self.hidden.boxes, self.hidden.moved)
 
     def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
         """Whether a triangle hides a light from the region of a point (3,): "full", and its number, or "none"."""
