@@ -33,18 +33,20 @@ MOST = 64  # primitives that a box keeps for its parts, at most
 
 
 class Light(NamedTuple):
-    """Light `number` at place (3,) float32, in a slot of `Occluders`; no ray from it is longer than `longest`."""
+    """Light `number` at place (3,) float32, in a slot of `Occluders`; no ray from it is longer than `longest`, and
+    planes of shafts are wrong by less than `rounded` in float32, in units of the scene."""
 
     number: int
     slot: int
     place: NDArray[np.float32]
     longest: float
+    rounded: float
 
 
-def light_to(number: int, slot: int, place: NDArray[np.float32], low: NDArray, high: NDArray) -> Light:
-    """A light whose rays end between low and high (3,)."""
-    longest = float(np.linalg.norm(np.maximum(np.abs(place - low), np.abs(place - high)))) * 1.001
-    return Light(number, slot, place, longest)
+def light_to(number: int, slot: int, place: NDArray[np.float32], around: NDArray[np.float64], largest: float) -> Light:
+    """A light whose rays end in a box `around` (2, 3) all that is static, whose largest coordinate is `largest`."""
+    longest = float(np.linalg.norm(np.abs(place - around).max(0))) * 1.001
+    return Light(number, slot, place, longest, 2e-6 * max(largest, float(np.abs(place).max())))
 
 
 class BoxQuestion(NamedTuple):
@@ -107,15 +109,14 @@ classifies(BoxQuestion, classify_for_box)
 
 
 @subkernel
-def come_between(o, light, scratch, middle, half, rounded, given, given_count, found, counts):
+def come_between(o, light, scratch, middle, half, given, given_count, found, counts):
     """Find what may come between a light and the cube around middle (3,) with half sides `half`: how many primitives,
     more than MOST for too many, or HIDDEN where one hides the whole cube.
 
     Their numbers go into found (MOST + 2 LANES,) int32.  They are among given (given_count,) int32, or anywhere where
-    that is more than MOST; o are `Occluders`; rounded is more, in units of the scene, than planes are wrong by in
-    float32."""
+    that is more than MOST; o are `Occluders`."""
     place = np.float64(light.place[0]), np.float64(light.place[1]), np.float64(light.place[2])
-    put_box(scratch.shaft, place, middle, half, rounded)
+    put_box(scratch.shaft, place, middle, half, light.rounded)
     center = np.float32(middle[0]), np.float32(middle[1]), np.float32(middle[2])
     question = BoxQuestion(o, light.slot, light, scratch.shaft, center, np.float32(half))
     if scratch.state[0] > 0:  # what has hidden others may hide this one

@@ -20,6 +20,7 @@ from tracer.visibility.blockers import between_middles, find_blockers, hull_of, 
 from tracer.visibility.budget import COUNTERS, STEPS, TESTS
 from tracer.visibility.error_bounds import LONGEST
 from tracer.visibility.light_tree import build_light_tree
+from tracer.visibility.static_geometry import bounds_around
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -146,7 +147,7 @@ class HiddenLights:
 
     def __init__(self, world: World) -> None:
         triangles = world.triangles_of(0).rows
-        self.bounds = _bounds(triangles)
+        self.bounds = bounds_around(triangles, np.empty((0, 6), np.float32))
         self.blockers = find_blockers(triangles, world.hit_padding / LONGEST * float(np.abs(self.bounds).max()))
         self.boxes = np.empty((0, 6), np.float32)
         self._proved, self._tree = self.boxes, build_light_tree(np.zeros((1, 6), np.float32))
@@ -223,15 +224,6 @@ class LightLists:
         if len(self._starts) > 1:
             self._starts, self._lights = [np.concatenate(self._starts)], [np.concatenate(self._lights)]
         return self._starts[0], self._lights[0]
-
-
-def _bounds(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Lower and upper corner (2, 3) around triangles (t, 9), corner and two edges."""
-    if not len(triangles):
-        return np.zeros((2, 3))
-    first = triangles[:, :3].astype(np.float64)
-    every = np.concatenate([first, first + triangles[:, 3:6], first + triangles[:, 6:]])
-    return np.stack([every.min(0), every.max(0)])
 
 
 def boxes_of_samples(lamps: Lamps) -> NDArray[np.float32]:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import interval
 from tracer.geometry.memory import without_refcount
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
@@ -161,8 +162,8 @@ def _enclose_leaf(box, child, o, leaf, number, farthest):
         for axis in range(3):
             low, high = row[BOX + axis], row[BOX + 3 + axis]
             if i < o.first_quadric:
-                least, most = min(ZERO, min(row[3 + axis], row[6 + axis])), max(ZERO, max(row[3 + axis], row[6 + axis]))
-                low, high = max(row[axis] + least - more, low - room), min(row[axis] + most + more, high + room)
+                least, most = interval(o.rows, i, axis)
+                low, high = max(least - more, low - room), min(most + more, high + room)
             _enclose(box, child, axis, low, high)
 
 

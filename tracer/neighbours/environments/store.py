@@ -27,7 +27,7 @@ from tracer.visibility.box_candidates import MOST, Light, light_to
 from tracer.visibility.budget import COUNTERS, Counts
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.grid import DIGITS
-from tracer.visibility.static_geometry import NEVER_HIT, StaticGeometry, without_area
+from tracer.visibility.static_geometry import StaticGeometry
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -69,7 +69,6 @@ class EnvironmentStore:
         self.geometry = StaticGeometry(world, self.held, threads, True)
         #: The cells.
         self.tree = CellTree(self.geometry.bounds)
-        self._flat = without_area(self.geometry)
         # The lights that are not held, or are lamps.
         further = np.arange(count) >= self.held
         further[: self.held] |= ~single[: self.held]
@@ -120,14 +119,7 @@ class EnvironmentStore:
             self.places[numbers] = lamps.places[numbers]
             self._usable[numbers] = ~far[numbers]
             self._forget(numbers)
-            self.geometry.update_lights(
-                numbers.tolist(),
-                lamps.places,
-                np.zeros(len(lamps.places), np.float32),
-                self.geometry.beyond(*self._edges()),
-            )
-            for light in numbers:
-                self.geometry.occluders.light_space[light][self._flat] = NEVER_HIT
+            self.geometry.update_points(numbers.tolist(), lamps.places, self._around)
         if self.further.update(lamps, self._known):
             self._begin_cells()
 
@@ -137,15 +129,16 @@ class EnvironmentStore:
         self.tree.leaves_open(int(sum(1 << int(light) for light in lights)))
         self._anew = True
 
-    def _edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The corners (3,) of all cells together."""
+    @property
+    def _around(self) -> NDArray[np.float64]:
+        """The corners (2, 3) of all cells together."""
         frame = self.tree.frame
         low = np.array([frame.x, frame.y, frame.z])
-        return low, low + 2.0**frame.levels * frame.side
+        return np.stack([low, low + 2.0**frame.levels * frame.side])
 
     def light(self, number: int) -> Light:
         """A held light as `settle` knows it."""
-        return light_to(number, number, self.places[number].copy(), *self._edges())
+        return light_to(number, number, self.places[number].copy(), self._around, self.geometry.largest)
 
     # Settling cells.
 
@@ -191,11 +184,10 @@ class EnvironmentStore:
         ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
             codes, found = np.empty(len(cells), np.int32), np.zeros((len(cells), MOST), np.int32)
             boxes = boxes_of(self.tree.frame, self.tree.cells[cells])
-            rounded = 2e-6 * max(self.geometry.largest, float(np.abs(light.place).max()))
 
             def work(chunk: int, worker: int) -> None:
                 those = slice(chunk * CHUNK, (chunk + 1) * CHUNK)
-                given = boxes[those], above[those], self.names, rounded, codes[those], found[those]
+                given = boxes[those], above[those], self.names, codes[those], found[those]
                 settle(self.geometry.occluders, light, *given, counts[worker])
 
             for_each_chunk(work, -(-len(cells) // CHUNK), self._threads, cancel)

@@ -29,7 +29,7 @@ from tracer.visibility.budget import COUNTERS, Counts
 from tracer.visibility.error_bounds import BOX, LANES, REPORTED
 from tracer.visibility.grid import DIGITS, Grid, cube_at
 from tracer.visibility.light_space import FARTHEST, LIGHT_ROW
-from tracer.visibility.static_geometry import NEVER_HIT, StaticGeometry, without_area
+from tracer.visibility.static_geometry import StaticGeometry
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -67,7 +67,7 @@ class VoxelStore:
         # How far from each primitive a hit may be reported: inf where its box alone tells, negative for none at all.
         self._reach, self._more = np.zeros(len(rows), np.float32), 0.0
         self._reach[self._geometry.first_quadric :] = np.inf
-        self._flat = without_area(self._geometry)
+        self._flat = self._geometry.flat()
         self._reach[self._flat] = -1.0
         self._listed = False
         self._starts, self._names = np.zeros(self.grid.cubes + 1, np.int32), np.zeros(LANES, np.int32)
@@ -131,16 +131,16 @@ class VoxelStore:
         self._leave_words_to_pictures()
         forget_lights(self.words, [light])
         low = np.array([grid.x, grid.y, grid.z])
-        high = low + np.array([grid.nx, grid.ny, grid.nz]) * grid.side
-        known, rounded = light_to(light, 0, place, low, high), 2e-6 * max(geometry.largest, float(np.abs(place).max()))
-        geometry.update_lights([0], place[None], np.zeros(1, np.float32), geometry.beyond(low, high))
+        around = np.stack([low, low + np.array([grid.nx, grid.ny, grid.nz]) * grid.side])
+        known = light_to(light, 0, place, around, geometry.largest)
+        geometry.update_points([0], place[None], around)
         self._prepare(light, known.longest)
         many = grid.cubes // BLOCK**3
         shares = np.array_split(np.arange(many), max(1, many // CHUNK))
 
         def work(chunk: int, worker: int) -> None:
             words = words_at(self.words)
-            classify_blocks(geometry.occluders, grid, words, known, rounded, shares[chunk], counts[worker])
+            classify_blocks(geometry.occluders, grid, words, known, shares[chunk], counts[worker])
 
         for_each_chunk(work, len(shares), threads, cancel)
         self.places[light] = place
@@ -148,7 +148,6 @@ class VoxelStore:
     def _prepare(self, light: int, longest: float) -> None:
         """Keep all primitives as the light sees them, and note how far from them its rays may report hits."""
         rows, made = self._geometry.rows, self._geometry.occluders.light_space[0]
-        made[self._flat] = NEVER_HIT
         self._light_space[light] = made
         infirm = made[:, FARTHEST] < 0.0
         reach = np.where(infirm, np.float32(np.inf), self._geometry.occluders.error_radii[0][: len(rows)])
