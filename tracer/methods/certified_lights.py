@@ -20,7 +20,7 @@ from tracer.geometry.memory import aligned_rows, without_refcount
 from tracer.geometry.rays import RAY_OFFSET
 from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.spatial_cache import WORDS, WithStore, hits_in_block, want_hits
-from tracer.neighbours.area_lights.hidden_samples import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
+from tracer.neighbours.area_lights.lamp_answers import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
 from tracer.neighbours.area_lights.recent_occluders import RecentOccluders, find_hidden, is_lamp
 from tracer.neighbours.regions.lookup import look, want_around
 from tracer.neighbours.regions.store import RegionStore, RegionView

@@ -22,8 +22,7 @@ from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
 from tracer.neighbours.cells_of_space import answer_in_cells, record_cells
 from tracer.neighbours.voxels.store import VoxelStore
 from tracer.neighbours.voxels.tell import Stop
-from tracer.neighbours.voxels.view import voxel_view_at
-from tracer.neighbours.voxels.walk import full_and_null, walk
+from tracer.neighbours.voxels.walk import full_and_null, voxel_view_at, walk
 from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in

@@ -19,7 +19,7 @@ from tracer.culling.counters import RAYS, TESTS
 from tracer.culling.shadow_testing import LIGHT_MARGIN, shadow_rays
 from tracer.culling.stages import looks_at, vectors
 from tracer.geometry.queries import STATIC_GEOMETRY, any_hits_by
-from tracer.neighbours.area_lights.hidden_samples import ALL, BITS, NOTHING, SOME, keep_bits
+from tracer.neighbours.area_lights.lamp_answers import ALL, BITS, NOTHING, SOME, keep_bits
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,

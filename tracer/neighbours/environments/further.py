@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.neighbours.environments.octree import boxes_of
-from tracer.neighbours.environments.tree import CellTree
+from tracer.neighbours.environments.octree import CellTree, boxes_of
 from tracer.scene.lights import Lamps
 from tracer.visibility.budget import CERTIFICATES
 from tracer.visibility.hidden_lights import HiddenLights, LightLists, boxes_of_samples

@@ -18,9 +18,19 @@ from numpy.typing import NDArray
 from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, word_type
 from tracer.culling.rest import Resting, boxes_at_rest
 from tracer.neighbours.environments.further import FurtherLights
-from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, ROOM, UNKNOWN, EnvironmentView, boxes_of
+from tracer.neighbours.environments.octree import (
+    HIDDEN,
+    LIT,
+    OUTSIDE,
+    ROOM,
+    UNKNOWN,
+    CellTree,
+    EnvironmentView,
+    boxes_of,
+    lengthened,
+    room_for,
+)
 from tracer.neighbours.environments.settle import settle
-from tracer.neighbours.environments.tree import CellTree, lengthened, room_for
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.box_candidates import MOST, Light, light_to

@@ -12,7 +12,7 @@ from tracer.runtime.kernels import inlined
 from tracer.simd import maximum, minimum, select, to_i32
 
 FACES = 6
-HALF, ONE, ZERO = np.float32(0.5), np.float32(1), np.float32(0)
+HALF, ZERO = np.float32(0.5), np.float32(0)
 SEAM = 1e-6  # by so much a cell reaches over its edge: more than the roundings that may send a direction next door
 
 

@@ -65,16 +65,6 @@ def tell(cube: Cube, light: NDArray[np.float32], point: NDArray[np.float32]) -> 
     return Told(Said.CANDIDATES if count else Said.UNKNOWN, names)
 
 
-def listed(cube: Cube, face: int, row: int, column: int) -> tuple[int, ...]:
-    """The primitives in the list of a cell, by number; or only the one that covers all of it."""
-    number = int(cube.cells[face, row, column]) >> WIDTH_BITS
-    if number == NOTHING:
-        return ()
-    first, count = (int(x) for x in cube.records.view(np.int32)[number, [FIRST, COUNT]])
-    names = tuple(int(cube.numbers[row]) for row in cube.lists[first : first + count])
-    return names or ((int(cube.every[first]),) if first >= 0 else ())
-
-
 def list_lengths(cube: Cube) -> NDArray[np.int32]:
     """(6, side, side) int32, the candidates of each cell; -1 where there are too many, or only one that covers it."""
     numbers = cube.cells >> WIDTH_BITS

@@ -21,12 +21,12 @@ from tracer.neighbours.voxels.classify import classify_blocks
 from tracer.neighbours.voxels.contents import list_contents
 from tracer.neighbours.voxels.grid import BLOCK, ROOM, make_grid, voxels_for
 from tracer.neighbours.voxels.tell import VoxelStates, Walked, walked
-from tracer.neighbours.voxels.view import VoxelView
+from tracer.neighbours.voxels.walk import VoxelView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.box_candidates import light_to
 from tracer.visibility.budget import COUNTERS, Counts
-from tracer.visibility.error_bounds import BOX, LANES, REPORTED
+from tracer.visibility.error_bounds import LANES, REPORTED
 from tracer.visibility.grid import DIGITS, Grid, cube_at
 from tracer.visibility.light_space import FARTHEST, LIGHT_ROW
 from tracer.visibility.static_geometry import StaticGeometry
@@ -224,12 +224,3 @@ class VoxelStore:
         return np.where(
             (cell >= 0) & (cell < self.grid.cubes), self.words[cell] & ~word(3) | word(FULLY_RENDERED), word(0)
         )
-
-    def contents(self, number: int) -> NDArray[np.int32]:
-        """The numbers of the primitives in a voxel."""
-        return self._names[self._starts[number] : self._starts[number + 1]]
-
-    @property
-    def boxes(self) -> NDArray[np.float32]:
-        """(primitives, 6) boxes outside of which no hit is reported."""
-        return self._geometry.rows[:, BOX:]
