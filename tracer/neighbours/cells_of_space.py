@@ -9,6 +9,8 @@ from tracer.geometry.boxes import segments_miss_box
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import address_of, bits_of, i32_at, lowest_bit, mark, ones
 
+STATES = "none", "full", "lit", "candidates"  # what is known of a light in a cell, by its bits in the cell's word
+
 
 @inlined
 def record_cells(cell, place, wave, found):

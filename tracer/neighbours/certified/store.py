@@ -21,6 +21,7 @@ from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.rays import RAY_OFFSET
+from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.certified.cell_prism import SceneScale
 from tracer.neighbours.certified.cells import (
     ALONG_U,
@@ -57,7 +58,6 @@ from tracer.visibility.static_geometry import StaticGeometry
 if TYPE_CHECKING:
     from tracer.geometry.world import World
 
-STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks of one call of `certify`, at most
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 FEW_TILES = 4  # of a picture: with so many every vector of points makes requests, with twice as many every other

@@ -12,6 +12,7 @@ from tracer.runtime.kernels import inlined
 from tracer.simd import maximum, minimum, select, to_i32
 
 FACES = 6
+HUGE = 1e30
 HALF, ZERO = np.float32(0.5), np.float32(0)
 SEAM = 1e-6  # by so much a cell reaches over its edge: more than the roundings that may send a direction next door
 
@@ -21,6 +22,27 @@ def axes_of(face):
     """The axes of x, y and z on a face, and the sign of the last."""
     axis = face >> 1
     return (1 if axis == 0 else 0), (1 if axis == 2 else 2), axis, (-1.0 if face & 1 else 1.0)
+
+
+@inlined
+def widened(low, high, least, most, near, far):
+    """The range of x / z, joined by that of x between least and most where z is between near > 0 and far."""
+    return min(low, least / (far if least > 0.0 else near)), max(high, most / (near if most > 0.0 else far))
+
+
+@inlined
+def box_on_face(box, light, room, axes):
+    """Where a box (6,), `room` larger on all sides, lies on a face around light (3,): (left, right, low, high), which is
+    everywhere for one that reaches behind the light, and from what depth on to which."""
+    ax, ay, az, sign = axes
+    z0, z1 = box[az] - light[az] - room, box[3 + az] - light[az] + room
+    if sign < 0.0:
+        z0, z1 = -z1, -z0
+    if not z0 > 0.0:
+        return -HUGE, HUGE, -HUGE, HUGE, z0, z1
+    left, right = widened(HUGE, -HUGE, box[ax] - light[ax] - room, box[3 + ax] - light[ax] + room, z0, z1)
+    low, high = widened(HUGE, -HUGE, box[ay] - light[ay] - room, box[3 + ay] - light[ay] + room, z0, z1)
+    return left, right, low, high, z0, z1
 
 
 @inlined

@@ -145,13 +145,22 @@ def _filter(items, spans, arena, begin, end, x, y, half, found):
     return n, cover
 
 
+@inlined
+def _far_plane(items, cover):
+    keep = items[cover, KEEP]
+    return (
+        items[cover, NEAR] * keep,
+        items[cover, NEAR + 1] * keep,
+        items[cover, NEAR + 2] * keep - items[cover, LESS],
+    )
+
+
 @subkernel
 def _drop_hidden(items, arena, first, count, cover, x, y, half, found):
     """Drop those of `count` items, from `first` on in the arena, that lie beyond the far plane of one that covers the
     square; how many remain."""
     names, stride = address_of(arena), 4 * found.shape[1]
-    keep, less = items[cover, KEEP], items[cover, LESS]
-    fx, fy, fz = items[cover, NEAR] * keep, items[cover, NEAR + 1] * keep, items[cover, NEAR + 2] * keep - less
+    fx, fy, fz = _far_plane(items, cover)
     size = abs(fx) + abs(fy) + abs(fz)
     least = fx * x + fy * y + fz - half * (abs(fx) + abs(fy)) - ROUNDED * size
     n = np.int64(0)
@@ -201,16 +210,6 @@ def _near_plane(found, count, x, y, half):
     if middle + raised < highest:
         return nx, ny, nz + raised
     return ZERO, ZERO, highest
-
-
-@inlined
-def _far_plane(items, cover):
-    keep = items[cover, KEEP]
-    return (
-        items[cover, NEAR] * keep,
-        items[cover, NEAR + 1] * keep,
-        items[cover, NEAR + 2] * keep - items[cover, LESS],
-    )
 
 
 @inlined

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from tracer.culling.modes import FULLY_RENDERED, MAX_CULLED_LIGHTS, forget_lights, shadow_mode, word_type, words_at
 from tracer.culling.rest import Resting, boxes_at_rest
 from tracer.geometry.memory import aligned_rows
+from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.voxels.classify import classify_blocks
 from tracer.neighbours.voxels.contents import list_contents
 from tracer.neighbours.voxels.grid import BLOCK, ROOM, make_grid, voxels_for
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 
 CHUNK = 16  # blocks that a thread takes at a time
 NAMED = 12  # bytes of lists for a voxel, about
-STATES = "none", "full", "lit"  # of a voxel that is unknown, full and null: the words that certificates have
 
 
 class VoxelStore:
