@@ -32,8 +32,8 @@ def widened(low, high, least, most, near, far):
 
 @inlined
 def box_on_face(box, light, room, axes):
-    """Where a box (6,), `room` larger on all sides, lies on a face around light (3,): (left, right, low, high), which is
-    everywhere for one that reaches behind the light, and from what depth on to which."""
+    """Where a box (6,), `room` larger on all sides, lies on a face around light (3,): (left, right, low, high),
+    all of it for one that reaches behind the light, and from what depth on to which."""
     ax, ay, az, sign = axes
     z0, z1 = box[az] - light[az] - room, box[3 + az] - light[az] + room
     if sign < 0.0:
