@@ -119,9 +119,9 @@ class Environments(CellsOfSpace):
             return CullReason(Verdict.ANSWERED)
         state, named = store.describe(answered.primitive, point, answered.light)
         tree, cell = store.tree, store.tree.leaf_at(point)
-        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** tree.cells[cell, 3] * tree.frame.side
+        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** tree.cells[cell, 3] * tree.grid.side
         told = (
-            f"The cell is {side:.3g} wide, on level {tree.frame.levels - int(tree.cells[cell, 3])} of the octree; "
+            f"The cell is {side:.3g} wide, on level {tree.levels - int(tree.cells[cell, 3])} of the octree; "
             f"it asks {asked:,} of {len(store.places):,} lights."
         )
         verdict = Verdict.CELL_LIT if answered.lit else Verdict.CELL_FULL

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tracer.culling.counters import STEPS
-from tracer.culling.modes import MAX_CULLED_LIGHTS, POINT_MODE_ROWS, look_up, point_modes_in, shadow_modes
+from tracer.culling.modes import POINT_MODE_ROWS, look_up, point_modes_in, shadow_modes
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
@@ -48,10 +48,10 @@ def find(data, call, light, count, counts):
 def choose(data, call, light, count, counts):
     """Answer the rays to a light of which voxels are known."""
     given, voxels = call_at(call), voxel_view_at(data)
-    if light >= min(MAX_CULLED_LIGHTS, len(voxels.slot)) or voxels.slot[light] < 0:
+    if light >= len(voxels.known) or voxels.known[light] == 0:
         return
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), point_modes_in(scratch_of(given))
-    counted, sample, slot = i64_at(counts), given.samples[given.sample], voxels.slot[light]
+    counted, sample = i64_at(counts), given.samples[given.sample]
     place, outside = (sample[0], sample[1], sample[2]), np.int32(voxels.grid.nx * voxels.grid.ny * voxels.grid.nz)
     for v in range(vectors(count)):
         live = np.int64(batch.live[v])
@@ -65,7 +65,7 @@ def choose(data, call, light, count, counts):
         rest, end = live & ~(full | null) & bits_of(unit < outside), load_three(points.lifted, v)
         if rest != 0:
             begin = select(mask16(rest), unit, i32x16(np.int32(0)))
-            blocked, lit = walk(voxels, place, light, slot, end, begin, rest, counted)
+            blocked, lit = walk(voxels, place, light, end, begin, rest, counted)
             walked = blocked | lit
             full, null = full | blocked, null | lit
         answer_in_cells(batch, v, full, null, walked, voxels.resting, place, end, counted)

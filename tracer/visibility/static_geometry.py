@@ -87,7 +87,7 @@ class StaticGeometry:
         put_rows(self._world, index, outlines, self.rows[triangles], self.rows[quadrics])
         boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
         self._shapes[index] = shape_of(self.rows[triangles, :CORNER_ERROR], boxes, numbers, self._threads)
-        self._bounds_of[index] = self._bounds(index)
+        self._bounds_of[index] = bounds_around(self.rows[triangles, :CORNER_ERROR], boxes)
 
     @property
     def bytes(self) -> int:
@@ -154,11 +154,6 @@ class StaticGeometry:
         flat = (self.rows[:, 3:6] == 0).all(1) | (self.rows[:, 6:9] == 0).all(1)
         flat[self.first_quadric :] = False
         return flat
-
-    def _bounds(self, index: int) -> NDArray[np.float64]:
-        """Lower and upper corner (2, 3) of a box around an object."""
-        triangles, quadrics = self._rows_of(index)
-        return bounds_around(self.rows[triangles, :CORNER_ERROR], self.rows[quadrics, BOX:])
 
     def _join(self) -> None:
         """Put the trees of all objects back to back."""

@@ -127,7 +127,7 @@ def _can_split(cells, o, cell, scale):
 
 
 @subkernel
-def _put_cell(cells, o, cell, scale, s):
+def put_cell_of(cells, o, cell, scale, s):
     """Put the worker's shaft to a cell; False where that cannot be certified."""
     owner, place = np.int64(cells.owner[cell]), cells.place[cell]
     u, v, size = np.float64(place[0]), np.float64(place[1]), np.float64(place[2])
@@ -172,7 +172,7 @@ def _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience
         # Certify the cell for this light.
         made += 1
         if not put:
-            put, placed = True, _put_cell(cells, o, cell, scale, s)
+            put, placed = True, put_cell_of(cells, o, cell, scale, s)
         state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
         if placed:
             place = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
@@ -192,7 +192,7 @@ def _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience
             leaf
             and cells.requests[cell] + last - first >= patience
             and _can_split(cells, o, cell, scale)
-            and (put or _put_cell(cells, o, cell, scale, s))
+            and (put or put_cell_of(cells, o, cell, scale, s))
         ):
             _sort_points(cells, cell, points, first, last, tasks.parts[task])
 

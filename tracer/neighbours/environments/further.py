@@ -78,7 +78,7 @@ class FurtherLights:
         those = cells[self.of[cells] == 0]
         root, new = np.zeros(1, np.int32), []
         above = [self._leaves.get(int(parent), root) for parent in tree.parent[those]]
-        left_with = self._hidden.descend(boxes_of(tree.frame, tree.cells[those]), above, threads, counts, cancel)
+        left_with = self._hidden.descend(boxes_of(tree.grid, tree.cells[those]), above, threads, counts, cancel)
         counts[0, CERTIFICATES] += len(those)
         for cell, found in zip(those.tolist(), left_with, strict=True):
             around = self._leaves.get(int(tree.parent[cell]))
@@ -91,5 +91,5 @@ class FurtherLights:
         self.of[new] = self.lists.add([self.numbers[lights].astype(np.int32) for lights in below])
         sizes = np.diff(self.lists.arrays()[0], prepend=0)
         left, before = sizes[self.of[cells]], sizes[self.of[tree.parent[cells]]]
-        gains = (left < HARDLY * before) | (tree.cells[cells, 3] > tree.frame.levels - COARSE)
-        return (left > FEW_LIGHTS) & gains & (tree.cells[cells, 3] > tree.frame.levels - SHARE)
+        gains = (left < HARDLY * before) | (tree.cells[cells, 3] > tree.levels - COARSE)
+        return (left > FEW_LIGHTS) & gains & (tree.cells[cells, 3] > tree.levels - SHARE)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracer.runtime.kernels import inlined
 from tracer.simd import address_of, bits_of, gather_i32x16, i32x16, select
 from tracer.simd.records import I32, I64, Bytes, F32x2D, F32x3D, I64x2D, reading
-from tracer.visibility.grid import DIGITS, SHIFT, indices, place_of, within
+from tracer.visibility.grid import DIGITS, SHIFT, Grid, indices, place_of, within
 
 LEVELS = 8  # of the octree below its root, at most
 OUTSIDE, ROOT = 0, 1
@@ -23,27 +23,12 @@ CELL = 34  # bytes of a cell in `CellTree`
 ROOM = 0.01  # of the smallest cells, by which all are taken to be larger
 
 
-class Frame(NamedTuple):
-    """Where the root begins, in units of the scene, how many of the smallest cells there are in a unit of length, all
-    exact in float32, and how many levels are below the root."""
-
-    x: float
-    y: float
-    z: float
-    per_unit: float
-    levels: int
-
-    @property
-    def side(self) -> float:
-        """The side of the smallest cells."""
-        return 1.0 / self.per_unit
-
-
 class EnvironmentView(NamedTuple):
     """All cells, as kernels that are called by address read them.
 
     Attributes:
-        frame: where they are.
+        grid: of the smallest cells, a power of two on each side.
+        levels: how many are below the root.
         child: (cells,) int32, the first of a cell's eight children, 0 for a leaf.
         open: (cells,) bool, leaves about which more could be known.
         wanted: (cells,) bool, those of them in which rays have ended.
@@ -61,7 +46,8 @@ class EnvironmentView(NamedTuple):
         cell: (pixels,) int32, gets the cell at each primary hit; empty where nobody wants to know.
     """
 
-    frame: Frame
+    grid: Grid
+    levels: int
     child: I32
     open: Bytes
     wanted: Bytes
@@ -82,33 +68,35 @@ class EnvironmentView(NamedTuple):
 environments_at = reading(EnvironmentView)
 
 
-def make_frame(bounds: NDArray[np.float64]) -> Frame:
-    """An octree around bounds (2, 3), lower and upper corner."""
+def make_grid(bounds: NDArray[np.float64]) -> Grid:
+    """The grid of the smallest cells of an octree around bounds (2, 3), lower and upper corner.
+
+    Where it begins, and how many there are in a unit of length, are exact in float32."""
     extent, largest = max(float((bounds[1] - bounds[0]).max()), 1e-30), float(np.abs(bounds).max())
     finest = max(extent / (2**LEVELS - 1), 4.0 * DIGITS * largest / ROOM)
-    levels = max(0, min(LEVELS, int(np.ceil(np.log2(extent / finest + 1.0)))))
-    while 2**levels * finest < extent + 2.0 * SHIFT * finest:
+    many = 2 ** max(0, min(LEVELS, int(np.ceil(np.log2(extent / finest + 1.0)))))
+    while many * finest < extent + 2.0 * SHIFT * finest:
         finest *= 1.05
     x, y, z = (bounds[0] - SHIFT * finest).astype(np.float32).tolist()
-    return Frame(x, y, z, float(np.float32(1.0 / finest)), levels)
+    return Grid(x, y, z, float(np.float32(1.0 / finest)), many, many, many)
 
 
-def boxes_of(frame: Frame, places: NDArray[np.int32]) -> NDArray[np.float64]:
+def boxes_of(grid: Grid, places: NDArray[np.int32]) -> NDArray[np.float64]:
     """Boxes (n, 6) of cells whose places (n, 4) are where they begin, in the smallest cells, and their level."""
-    low = np.array([frame.x, frame.y, frame.z]) + places[:, :3] * frame.side
-    side, room = 2.0 ** places[:, 3:] * frame.side, ROOM * frame.side
+    low = np.array([grid.x, grid.y, grid.z]) + places[:, :3] * grid.side
+    side, room = 2.0 ** places[:, 3:] * grid.side, ROOM * grid.side
     return np.concatenate([low - room, low + side + room], 1)
 
 
 @inlined
 def cells_at(environments, x, y, z):
     """Numbers of the leaves in which sixteen points lie, OUTSIDE for those that are in none."""
-    frame, child = environments.frame, address_of(environments.child)
-    many, place = np.int64(1) << frame.levels, place_of(frame, x, y, z)
-    there = within(place, many, many, many)
+    grid, child = environments.grid, address_of(environments.child)
+    place = place_of(grid, x, y, z)
+    there = within(place, grid.nx, grid.ny, grid.nz)
     i, j, k = indices(place, there)
     cell = select(there, i32x16(np.int32(ROOT)), i32x16(np.int32(OUTSIDE)))
-    for level in range(frame.levels - 1, -1, -1):
+    for level in range(environments.levels - 1, -1, -1):
         first, by = gather_i32x16(child, cell), np.int32(level)
         inner = first > np.int32(0)
         if bits_of(inner) == 0:
@@ -127,7 +115,9 @@ class CellTree:
     bits of lights that are to be settled.  Of each array the first `count` are in use."""
 
     def __init__(self, bounds: NDArray[np.float64]) -> None:
-        self.frame: Frame = make_frame(bounds)
+        self.grid: Grid = make_grid(bounds)
+        #: How many levels are below the root.
+        self.levels = self.grid.nx.bit_length() - 1
         self.begin()
 
     def begin(self) -> None:
@@ -136,7 +126,7 @@ class CellTree:
         self.child, self.open, self.wanted = np.zeros(n, np.int32), np.zeros(n, np.bool_), np.zeros(n, np.bool_)
         self.cells, self.parent = np.zeros((n, 4), np.int32), np.zeros(n, np.int32)
         self.todo = np.zeros(n, np.int64)
-        self.cells[ROOT, 3] = self.frame.levels
+        self.cells[ROOT, 3] = self.levels
         self.open[ROOT], self.todo[ROOT] = True, -1
 
     @property
@@ -182,12 +172,12 @@ class CellTree:
 
     def leaves_at(self, points: NDArray[np.float32]) -> NDArray[np.int64]:
         """The leaves (n,) in which points (n, 3) lie, OUTSIDE for none."""
-        frame = self.frame
-        at = np.floor((points.astype(np.float64) - (frame.x, frame.y, frame.z)) * frame.per_unit)
-        there = ((at >= 0) & (at < 2**frame.levels)).all(1)
+        grid = self.grid
+        at = np.floor((points.astype(np.float64) - (grid.x, grid.y, grid.z)) * grid.per_unit)
+        there = np.all((at >= 0) & (at < grid.nx), axis=1)
         i, j, k = np.where(there[:, None], at, 0.0).astype(np.int64).T
         cell = np.where(there, ROOT, OUTSIDE)
-        for level in range(frame.levels - 1, -1, -1):
+        for level in range(self.levels - 1, -1, -1):
             first = self.child[cell]
             octant = 4 * (i >> level & 1) + 2 * (j >> level & 1) + (k >> level & 1)
             cell = np.where(first > 0, first + octant, cell)

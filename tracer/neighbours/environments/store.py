@@ -85,7 +85,7 @@ class EnvironmentStore:
         #: What is known of the others.
         self.further = FurtherLights(np.flatnonzero(further), world)
         #: The level of the smallest cells, as the tree counts them.
-        self.finest = max(0, self.tree.frame.levels - coarse) if coarse else 0
+        self.finest = max(0, self.tree.levels - coarse) if coarse else 0
         self.places = np.full((count, 3), np.nan, np.float32)  # for which anything is known
         self._resting = np.empty((0, 6), np.float32)
         self._known = np.zeros(count, np.bool_)
@@ -118,7 +118,7 @@ class EnvironmentStore:
         All cells are forgotten where they take more than half of the memory."""
         if self._cell_bytes > self._memory / 2:
             self._begin_cells()
-        far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.frame.per_unit > ROOM / 4
+        far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.grid.per_unit > ROOM / 4
         moved = (lamps.places != self.places).any(1)
         held = moved[: self.held].copy()
         held[np.setdiff1d(self.further.numbers, np.arange(self.held, len(far)))] = False
@@ -129,7 +129,7 @@ class EnvironmentStore:
             self.places[numbers] = lamps.places[numbers]
             self._usable[numbers] = ~far[numbers]
             self._forget(numbers)
-            self.geometry.update_points(numbers.tolist(), lamps.places, self._around)
+            self.geometry.update_points(numbers.tolist(), lamps.places, self.tree.grid.around)
         if self.further.update(lamps, self._known):
             self._begin_cells()
 
@@ -139,16 +139,9 @@ class EnvironmentStore:
         self.tree.leaves_open(int(sum(1 << int(light) for light in lights)))
         self._anew = True
 
-    @property
-    def _around(self) -> NDArray[np.float64]:
-        """The corners (2, 3) of all cells together."""
-        frame = self.tree.frame
-        low = np.array([frame.x, frame.y, frame.z])
-        return np.stack([low, low + 2.0**frame.levels * frame.side])
-
     def light(self, number: int) -> Light:
         """A held light as `settle` knows it."""
-        return light_to(number, number, self.places[number].copy(), self._around, self.geometry.largest)
+        return light_to(number, number, self.places[number].copy(), self.tree.grid.around, self.geometry.largest)
 
     # Settling cells.
 
@@ -193,7 +186,7 @@ class EnvironmentStore:
             cells: NDArray[np.int64], light: Light, above: NDArray[np.int32]
         ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
             codes, found = np.empty(len(cells), np.int32), np.zeros((len(cells), MOST), np.int32)
-            boxes = boxes_of(self.tree.frame, self.tree.cells[cells])
+            boxes = boxes_of(self.tree.grid, self.tree.cells[cells])
 
             def work(chunk: int, worker: int) -> None:
                 those = slice(chunk * CHUNK, (chunk + 1) * CHUNK)
@@ -254,7 +247,8 @@ class EnvironmentStore:
         """What kernels are given now; `looks` has rows where lights are to be selected, and cell (pixels,) int32 gets
         the cells of primary hits, if it is not empty."""
         return EnvironmentView(
-            self.tree.frame,
+            self.tree.grid,
+            self.tree.levels,
             self.tree.child,
             self.tree.open,
             self.tree.wanted,

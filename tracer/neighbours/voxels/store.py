@@ -56,14 +56,15 @@ class VoxelStore:
         rows = self._geometry.rows
         # Half of the memory is for voxels, half for what is kept of each light and primitive.
         held = min(lights, MAX_CULLED_LIGHTS, int(memory / 2) // max(1, 4 * LIGHT_ROW * len(rows)))
-        self._held = held if len(rows) else 0
-        word = word_type(self._held)
+        #: How many lights, the first ones, there is room for.
+        self.held = held if len(rows) else 0
+        word = word_type(self.held)
         each = np.dtype(word).itemsize + 4 + NAMED
         wanted = voxels_for(len(rows), each, memory / 2)
         self._coarser = wanted < voxels_for(len(rows), each, np.inf)
         self.grid: Grid = make_grid(self._geometry.bounds, wanted)
         self.words = np.zeros(self.grid.cubes + 1, word)
-        self._light_space = aligned_rows(self._held * len(rows), LIGHT_ROW).reshape(self._held, len(rows), LIGHT_ROW)
+        self._light_space = aligned_rows(self.held * len(rows), LIGHT_ROW).reshape(self.held, len(rows), LIGHT_ROW)
         # How far from each primitive a hit may be reported: inf where its box alone tells, negative for none at all.
         self._reach, self._more = np.zeros(len(rows), np.float32), 0.0
         self._reach[self._geometry.first_quadric :] = np.inf
@@ -84,19 +85,14 @@ class VoxelStore:
         return sum(a.nbytes for a in kept) + self._geometry.bytes
 
     @property
-    def held(self) -> int:
-        """How many lights, the first ones, there is room for."""
-        return self._held
-
-    @property
     def told(self) -> str:
         """What there is no memory for, in a sentence, or nothing."""
         lights, grid = min(len(self.places), MAX_CULLED_LIGHTS), self.grid
         said = []
         if self._coarser:
             said.append(f"Memory lowers the grid to {grid.nx} x {grid.ny} x {grid.nz} voxels.")
-        if self._held < lights and len(self._geometry.rows):
-            said.append(f"There is memory for {self._held} of {lights} lights; rays to the others are traced.")
+        if self.held < lights and len(self._geometry.rows):
+            said.append(f"There is memory for {self.held} of {lights} lights; rays to the others are traced.")
         return " ".join(said)
 
     def update(self, lamps: Lamps, resting: Resting) -> None:
@@ -104,7 +100,7 @@ class VoxelStore:
         single = np.diff(lamps.first) == 1
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.grid.per_unit > ROOM / 4
         wanted = np.where((single & ~far)[:, None], lamps.places, np.float32(np.nan))
-        wanted[self._held :] = np.nan
+        wanted[self.held :] = np.nan
         moved = np.flatnonzero((wanted != self.places).any(1) & ~np.isnan(self.places[:, 0]))
         if len(moved):
             self._leave_words_to_pictures()
@@ -130,10 +126,8 @@ class VoxelStore:
         geometry, grid, place = self._geometry, self.grid, self._wanted[light].copy()
         self._leave_words_to_pictures()
         forget_lights(self.words, [light])
-        low = np.array([grid.x, grid.y, grid.z])
-        around = np.stack([low, low + np.array([grid.nx, grid.ny, grid.nz]) * grid.side])
-        known = light_to(light, 0, place, around, geometry.largest)
-        geometry.update_points([0], place[None], around)
+        known = light_to(light, 0, place, grid.around, geometry.largest)
+        geometry.update_points([0], place[None], grid.around)
         self._prepare(light, known.longest)
         many = grid.cubes // BLOCK**3
         shares = np.array_split(np.arange(many), max(1, many // CHUNK))
@@ -177,14 +171,14 @@ class VoxelStore:
 
     def view(self, cell: NDArray[np.int32]) -> VoxelView:
         """What kernels are given now; cell (pixels,) int32 gets the voxels of primary hits, if it is not empty."""
-        slot = np.where(np.isnan(self.places[:, 0]), -1, np.arange(len(self.places))).astype(np.int32)
+        known = ~np.isnan(self.places[:, 0])
         return VoxelView(
             self.grid,
             words_at(self.words),
             self._starts,
             self._names,
             self._light_space,
-            slot,
+            known,
             self._resting,
             self._by_ray,
             cell,

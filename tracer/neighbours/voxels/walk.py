@@ -33,7 +33,7 @@ from tracer.simd import (
     select,
     store,
 )
-from tracer.simd.records import I32, F32x2D, F32x3D, reading
+from tracer.simd.records import I32, Bytes, F32x2D, F32x3D, reading
 from tracer.visibility.ask_list import ASKED, KNOWN, ask_list
 from tracer.visibility.grid import Grid, place_of, within
 
@@ -50,7 +50,7 @@ class VoxelView(NamedTuple):
         starts: (voxels + 1,) int32, where in names the primitives of each voxel begin.
         names: (m,) int32, numbers of primitives.
         light_space: (held lights, primitives, LIGHT_ROW) float32 (`tracer.visibility.light_space`).
-        slot: (lights,) int32, which of the held lights each is; -1 for those about which nothing is known.
+        known: (lights,) bool, those of the held lights about which anything is known.
         resting: (k, 6) float32, boxes around what rests now.
         by_ray: whether steps and tests are counted ray by ray, or for vectors of sixteen.
         cell: (pixels,) int32, gets the voxel at each primary hit; empty where nobody wants to know.
@@ -61,7 +61,7 @@ class VoxelView(NamedTuple):
     starts: I32
     names: I32
     light_space: F32x3D
-    slot: I32
+    known: Bytes
     resting: F32x2D
     by_ray: bool
     cell: I32
@@ -111,12 +111,12 @@ def _ask(voxels, rows, light, end, direction, number, occupied, seen, masks, cou
 
 
 @subkernel
-def walk(voxels, light, number, slot, end, begin, open_, counts):
-    """Let those of sixteen rays whose bits are `open_` walk from their ends towards light `number` at light (3,), which
-    is held in a slot: bits of those that are blocked, and of those that nothing static blocks.
+def walk(voxels, light, number, end, begin, open_, counts):
+    """Let those of sixteen rays whose bits are `open_` walk from their ends towards light `number` at light (3,):
+    bits of those that are blocked, and of those that nothing static blocks.
 
     end are three vectors, begin the numbers of the voxels in which they lie."""
-    grid, rows = voxels.grid, address_of(voxels.light_space[slot])
+    grid, rows = voxels.grid, address_of(voxels.light_space[number])
     direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
     px, py, pz = place_of(grid, end[0], end[1], end[2])
     lx, ly, lz = place_of(grid, light[0], light[1], light[2])
