@@ -23,12 +23,7 @@ from tracer.methods.spatial_cache import NOWHERE, WithStore
 from tracer.neighbours.area_lights.find_lamp_answers import find_answers
 from tracer.neighbours.area_lights.lamp_answers import LAMP_ANSWER_ROWS, answer_sample, lamp_answers_in
 from tracer.neighbours.cells_of_space import record_cells
-from tracer.neighbours.certified.lookup import (
-    CELL_POINT_ROWS,
-    cell_points_in,
-    cull_by_certificates,
-    find_cells,
-)
+from tracer.neighbours.certified.lookup import CELL_POINT_ROWS, cell_points_in, cull_by_certificates, find_cells
 from tracer.neighbours.certified.requests import (
     Requests,
     make_requests,

@@ -105,8 +105,7 @@ def hull_of(boxes, i):
         np.float32(0.5 * (boxes[i, 5] - boxes[i, 2])),
     )
     return Hull(
-        (x, y, z),
-        (hx + _ROUNDED * (hx + abs(x)), hy + _ROUNDED * (hy + abs(y)), hz + _ROUNDED * (hz + abs(z))),
+        (x, y, z), (hx + _ROUNDED * (hx + abs(x)), hy + _ROUNDED * (hy + abs(y)), hz + _ROUNDED * (hz + abs(z)))
     )
 
 

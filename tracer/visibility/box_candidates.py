@@ -13,16 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import (
-    address_of,
-    any_lane,
-    bits_of,
-    f32x16,
-    gather_f32x16,
-    lanes_below,
-    load_columns,
-    load_i32x16,
-)
+from tracer.simd import address_of, any_lane, bits_of, f32x16, gather_f32x16, lanes_below, load_columns, load_i32x16
 from tracer.visibility.budget import TESTS
 from tracer.visibility.error_bounds import LANES, ROW, ZERO
 from tracer.visibility.light_space import FARTHEST, LIGHT_ROW, D, U, V, in_all_lanes, judge

@@ -17,17 +17,7 @@ from tracer.geometry.memory import without_refcount
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
 from tracer.runtime.kernels import inlined, kernel, subkernel
-from tracer.simd import (
-    address_of,
-    f32x16,
-    i32x16,
-    lane_numbers_x16,
-    local_memory,
-    maximum,
-    minimum,
-    select,
-    store,
-)
+from tracer.simd import address_of, f32x16, i32x16, lane_numbers_x16, local_memory, maximum, minimum, select, store
 from tracer.simd.records import I32, F32x2D, F32x3D, I32x2D
 from tracer.visibility.error_bounds import (
     BOX,

@@ -12,24 +12,8 @@ import numpy as np
 from tracer.culling.counters import TESTS
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import (
-    i32_at,
-    i32x16,
-    i64_at,
-    lanes_below,
-    load_f32x16,
-    load_i32,
-    load_three,
-    lowest_bit,
-    ones,
-    store,
-)
-from tracer.visibility.area_light_tests import (
-    MOST_SAMPLES,
-    ask_points,
-    ask_samples,
-    ask_triangles,
-)
+from tracer.simd import i32_at, i32x16, i64_at, lanes_below, load_f32x16, load_i32, load_three, lowest_bit, ones, store
+from tracer.visibility.area_light_tests import MOST_SAMPLES, ask_points, ask_samples, ask_triangles
 from tracer.visibility.beams import make_beam, passes_by, primitives_met, put_cone
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.prepared_triangles import PREPARED, prepare_in_tree, prepared_met

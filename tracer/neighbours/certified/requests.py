@@ -12,15 +12,7 @@ import numpy as np
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.stages import vectors
-from tracer.neighbours.certified.cells import (
-    CANDIDATES,
-    CORNER,
-    LEAF,
-    NORMAL,
-    RECEIVER,
-    ROOTS,
-    UNTRIED,
-)
+from tracer.neighbours.certified.cells import CANDIDATES, CORNER, LEAF, NORMAL, RECEIVER, ROOTS, UNTRIED
 from tracer.neighbours.certified.lookup import NOWHERE, affine
 from tracer.neighbours.certified.quadtree import descend
 from tracer.runtime.kernels import inlined, subkernel

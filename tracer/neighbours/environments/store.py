@@ -156,11 +156,7 @@ class EnvironmentStore:
         return np.flatnonzero(tree.wanted[: tree.count] & tree.open[: tree.count])
 
     def work(
-        self,
-        want: Callable[[], None],
-        seconds: float,
-        cancel: Callable[[], bool] | None = None,
-        by: By | None = None,
+        self, want: Callable[[], None], seconds: float, cancel: Callable[[], bool] | None = None, by: By | None = None
     ) -> Counts:
         """Settle the cells that are wanted, and those within them that `want` wants then, until the time is up.
 
@@ -199,11 +195,7 @@ class EnvironmentStore:
         return proved
 
     def _settle(
-        self,
-        cells: NDArray[np.int64],
-        method: Settle,
-        counts: NDArray[np.int64],
-        cancel: Callable[[], bool] | None,
+        self, cells: NDArray[np.int64], method: Settle, counts: NDArray[np.int64], cancel: Callable[[], bool] | None
     ) -> None:
         """Settle cells (n,), and divide those that are worth it."""
         tree, worth = self.tree, np.zeros(len(cells), np.bool_)

@@ -35,10 +35,7 @@ def _put_boxes(boxes, light, side, depths):
             first, last, half = (0, 0), (side - 1, side - 1), 0.5 * side
             if z0 > 0.0:
                 first = max(0, int((left - SEAM + 1.0) * half)), max(0, int((low - SEAM + 1.0) * half))
-                last = (
-                    min(side - 1, int((right + SEAM + 1.0) * half)),
-                    min(side - 1, int((high + SEAM + 1.0) * half)),
-                )
+                last = (min(side - 1, int((right + SEAM + 1.0) * half)), min(side - 1, int((high + SEAM + 1.0) * half)))
             nearest = np.float32(max(z0, 0.0) * 0.99999)
             for row in range(first[1], last[1] + 1):
                 for column in range(first[0], last[0] + 1):
