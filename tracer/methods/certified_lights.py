@@ -145,17 +145,11 @@ class CertifiedLights(WithStore):
             triangles = self.services.world.triangles_of(0)
             self._rows = aligned_rows(len(triangles.rows), ROW)
             self._rows[:, :CORNER_ERROR], self._rows[:, CORNER_ERROR], self._rows[:, BOX:] = triangles
+        sure = SureHitLength(len(self._rows), self.store.hidden.blockers.longest, 0.0)
         return RecentOccluders(
-            self._rows,
-            SureHitLength(len(self._rows), self.store.hidden.blockers.longest, 0.0),
-            lamps.places,
-            lamps.radii,
-            lamps.samples,
-            lamps.first,
-            self.services.cost_model.least_samples,
-            placed.any_hit,
-            placed.data,
-        )
+            self._rows, sure, lamps.places, lamps.radii, lamps.samples, lamps.first,
+            self.services.cost_model.least_samples, placed.any_hit, placed.data,
+        )  # fmt: skip
 
     def keep(self, frame: FrameView) -> None:
         assert self.store is not None, "updated before"

@@ -97,13 +97,9 @@ def find_hidden(recent, points, batch, hidden, number, looked, count, counts):
     place, first = recent.places[number], np.int64(recent.first[number])
     light, many = (place[0], place[1], place[2]), np.int64(recent.first[number + 1]) - first
     room = _Room(
-        local_memory(SAMPLES),
-        local_memory(NUMBERS),
-        local_memory(PREPARED),
-        local_memory(KEPT),
-        local_memory(BITS),
+        local_memory(SAMPLES), local_memory(NUMBERS), local_memory(PREPARED), local_memory(KEPT), local_memory(BITS),
         local_memory(STATE),
-    )
+    )  # fmt: skip
     groups = put_samples(recent.samples, first, many, light, room.samples)
     lamp, state = Lamp(number, light, recent.radii[number], groups), i64_at(room.state)
     state[KNOWN], state[NEXT], state[IN_VAIN] = 0, 0, 0

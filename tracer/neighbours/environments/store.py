@@ -238,24 +238,11 @@ class EnvironmentStore:
     def view(self, looks: NDArray[np.int64], cell: NDArray[np.int32]) -> EnvironmentView:
         """What kernels are given now; `looks` has rows where lights are to be selected, and cell (pixels,) int32 gets
         the cells of primary hits, if it is not empty."""
+        tree, further, space = self.tree, self.further, self.geometry.occluders.light_space
         return EnvironmentView(
-            self.tree.grid,
-            self.tree.levels,
-            self.tree.child,
-            self.tree.open,
-            self.tree.wanted,
-            self.codes.reshape(-1),
-            self.held,
-            self.names,
-            self.further.of,
-            *self.further.lists.arrays(),
-            self.geometry.occluders.light_space,
-            self._known.copy(),
-            self._resting,
-            self._by_ray,
-            looks,
-            cell,
-        )
+            tree.grid, tree.levels, tree.child, tree.open, tree.wanted, self.codes.reshape(-1), self.held, self.names,
+            further.of, *further.lists.arrays(), space, self._known.copy(), self._resting, self._by_ray, looks, cell,
+        )  # fmt: skip
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """What is known of cells, of any shape, as words like those of `tracer.neighbours.certified.cells`."""

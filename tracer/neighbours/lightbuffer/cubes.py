@@ -213,13 +213,5 @@ class CubeMaker:
         rows[:] = self._items.rows[which]
         if len(which):
             put_rows_of_light(rows, SureHitLength(len(which), self._items.sure, 0.0), light, light_space)
-        return Cube(
-            cells,
-            records,
-            mark[lists],
-            light_space,
-            self._items.numbers[which],
-            self._items.numbers,
-            reach,
-            self._items.sure,
-        )
+        numbers = self._items.numbers
+        return Cube(cells, records, mark[lists], light_space, numbers[which], numbers, reach, self._items.sure)

@@ -171,17 +171,9 @@ class VoxelStore:
 
     def view(self, cell: NDArray[np.int32]) -> VoxelView:
         """What kernels are given now; cell (pixels,) int32 gets the voxels of primary hits, if it is not empty."""
-        known = ~np.isnan(self.places[:, 0])
+        words, known = words_at(self.words), ~np.isnan(self.places[:, 0])
         return VoxelView(
-            self.grid,
-            words_at(self.words),
-            self._starts,
-            self._names,
-            self._light_space,
-            known,
-            self._resting,
-            self._by_ray,
-            cell,
+            self.grid, words, self._starts, self._names, self._light_space, known, self._resting, self._by_ray, cell
         )
 
     def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
