@@ -194,8 +194,7 @@ class CertifiedCells(WithStore):
             self.scheduler.finish(self._counts.certificates, statistics.shadow.due)
 
     def because(self, answered: Answered) -> CullReason:
-        known = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
-        state, named = known or ("none", ())
+        state, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
         if state == "candidates":
             return CullReason(Verdict.CANDIDATES, named)
         if state == ("lit" if answered.lit else "full"):

@@ -156,7 +156,7 @@ class CertifiedLights(WithStore):
         self.store.keep_within(1e6 * frame.settings.certificate_memory)
 
     def because(self, answered: Answered) -> CullReason:
-        _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light) or ("", ())
+        _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
         # What no region hides was hidden, sample by sample, by what had hidden it from neighbours.
         return CullReason(Verdict.PASSED_OVER if named else Verdict.BEAM, named)
 

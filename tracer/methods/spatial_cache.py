@@ -60,8 +60,8 @@ class WithStore(ShadowMethod):
     def report(self, statistics: FrameStatistics) -> None:
         statistics.add_made(self._counts)
 
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        return None if self.store is None else self.store.describe(primitive, point, light)
+    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        return ("none", ()) if self.store is None else self.store.describe(primitive, point, light)
 
     def forget(self) -> None:
         self.store = None

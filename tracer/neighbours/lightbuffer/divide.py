@@ -22,8 +22,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.memory import without_refcount
-from tracer.neighbours.lightbuffer.cube import SEAM, axes_of
-from tracer.neighbours.lightbuffer.shapes import (
+from tracer.neighbours.lightbuffer.cube import (
     BLOCKED,
     COUNT,
     COVERS,
@@ -43,11 +42,13 @@ from tracer.neighbours.lightbuffer.shapes import (
     NUMBER,
     OF_U,
     OF_V,
+    SEAM,
     SPAN,
     WIDTH_BITS,
     U,
     V,
     W,
+    axes_of,
 )
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (

@@ -21,11 +21,11 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.memory import without_refcount
-from tracer.neighbours.lightbuffer.cube import HUGE, axes_of, box_on_face, widened
-from tracer.neighbours.lightbuffer.shapes import (
+from tracer.neighbours.lightbuffer.cube import (
     COVERS,
     HIGH_X,
     HIGH_Y,
+    HUGE,
     KEEP,
     LESS,
     LOW_X,
@@ -39,6 +39,9 @@ from tracer.neighbours.lightbuffer.shapes import (
     U,
     V,
     W,
+    axes_of,
+    box_on_face,
+    widened,
 )
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (

@@ -27,9 +27,8 @@ from tracer.neighbours.lightbuffer.candidates import (
     SHADOWED_RAY,
     ask_candidates,
 )
-from tracer.neighbours.lightbuffer.cube import cells_of
+from tracer.neighbours.lightbuffer.cube import COUNT, FIRST, RECORD, WIDTH_BITS, cells_of
 from tracer.neighbours.lightbuffer.items import LEAST
-from tracer.neighbours.lightbuffer.shapes import COUNT, FIRST, RECORD, WIDTH_BITS
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.neighbours.lightbuffer.cube import BLOCKED, COUNT, FIRST, LIT, NOTHING, WIDTH_BITS
 from tracer.neighbours.lightbuffer.cubes import Cube
-from tracer.neighbours.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, NOTHING, WIDTH_BITS
 
 
 class Said(Enum):

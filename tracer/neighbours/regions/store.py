@@ -1,4 +1,5 @@
-"""The regions of a scene and the lights that each is left with, as far as rays have ended there."""
+"""The regions of a scene, cubes of which few are ever looked at, and the lights that each is left with, as far as rays
+have ended there."""
 
 from __future__ import annotations
 
@@ -9,16 +10,18 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.neighbours.regions.grid import blocks_around, make_grid, region_boxes
+from tracer.geometry.boxes import OUTWARDS
 from tracer.scene.lights import Lamps
 from tracer.simd.records import I32, I64, Bytes, F32x2D
 from tracer.visibility.budget import COUNTERS, STEPS, TESTS, Budget, Counts
-from tracer.visibility.grid import Grid, cube_at
+from tracer.visibility.grid import SHIFT, Grid, boxes_of, cube_at, index_of
 from tracer.visibility.hidden_lights import HiddenLights, LightLists, boxes_of_samples
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
 
+FINEST, MOST_REGIONS = 256, 1 << 24  # regions along the longest side, and in all, at most
+ROOM = 1e-3  # of a region, by which each is taken to be larger: points are led to theirs in float32
 COARSE = 8  # regions on a side of the blocks for which lights are left out first
 BATCH, MOST = 64, 4096  # regions of a frame's first batch, and of any
 HARDLY = 0.8  # of a block's leaves: a region that keeps more is not worth a list of its own
@@ -146,3 +149,25 @@ class RegionStore:
             if hider >= 0:
                 return "full", (hider,)
         return "none", ()
+
+
+def make_grid(bounds: NDArray[np.float64]) -> Grid:
+    """A grid around bounds (2, 3), lower and upper corner."""
+    extent = np.maximum(bounds[1] - bounds[0], 1e-30)
+    side = max(extent.max() / FINEST, (np.prod(np.maximum(extent, extent.max() / FINEST)) / MOST_REGIONS) ** (1 / 3))
+    low = bounds[0] - SHIFT * side
+    nx, ny, nz = (int(n) for n in np.floor((bounds[1] - low) / side) + 1)
+    x, y, z = low.tolist()
+    return Grid(x, y, z, 1.0 / side, nx, ny, nz)
+
+
+def region_boxes(grid: Grid, numbers: NDArray[np.int64], times: int = 1) -> NDArray[np.float64]:
+    """`boxes_of` regions (k,), or of blocks of them, with room for all points that are led to them."""
+    boxes = boxes_of(grid, numbers, ROOM, times)
+    return boxes + 1e-6 * np.abs(boxes).max(1, keepdims=True, initial=0.0) * OUTWARDS
+
+
+def blocks_around(grid: Grid, numbers: NDArray[np.int64], times: int) -> NDArray[np.int64]:
+    """A number (k,) for the block of so many regions on a side that each of regions (k,) lies in."""
+    x, y, z = index_of(grid, numbers)
+    return ((x // times) * grid.ny + y // times) * grid.nz + z // times
