@@ -7,15 +7,11 @@ import gc
 import os
 import sys
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from viewer.util.screen import has_display, no_display_reason
-
-# For Linux on Arm there is no Embree to be compared with.
-collect_ignore = [] if find_spec("embreex") else ["test_bench_embree.py", "tracing/test_embree.py"]
 
 BART = Path(__file__).resolve().parents[1].parent / "shared" / "bart"
 
@@ -54,8 +50,8 @@ def bart() -> Path:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests marked `gui` open a window and take longest, so they begin early, that no process waits for another's at
-    the end; the direction of imports is looked at before anything else."""
-    items.sort(key=lambda item: (item.path.name != "test_house.py", item.get_closest_marker("gui") is None))
+    the end."""
+    items.sort(key=lambda item: item.get_closest_marker("gui") is None)
     if not has_display():
         reason = pytest.mark.skip(reason=f"{no_display_reason()}; 'make test' brings one along")
         for item in items:

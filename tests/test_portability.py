@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.sweeps import ALL
 from tracer.experiments.cluster import Cluster
 from tracer.runtime import parallel
 
@@ -39,6 +40,7 @@ for package in (tracer, viewer):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="what POSIX has cannot be taken away where it is not there")
+@pytest.mark.skipif(not ALL, reason="left to make test-all, and to CI on Windows")
 def test_everything_can_be_imported_without_what_only_posix_has() -> None:
     done = subprocess.run([sys.executable, "-c", IMPORT_EVERYTHING], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -4,12 +4,12 @@
     make bench ARGS="--quick"                                 a first look
     make bench ARGS="--accelerator kdtree --frames 0 robot.aff --views 3"
 
-Embree is the one that embreex's wheel brings along, called by its C interface: single rays and
-packets, with and without its coherent flag, robust off, over one tree of all triangles of the
-moment.  Its best mode is found anew for each kind of rays in each view, and is timed tracing alone:
-packets are filled before the clock starts.  Ours is timed as the call of a `World`, answers allocated
-and all.  Contestants take turns.  Goals that are missed are printed, and no failure; the exit code is 1
-where too many answers are not those of Embree with robust on, or rays are not those of the frames.
+Embree is the one that embreex's wheel brings along, called by its C interface: single rays and packets, with and
+without its coherent flag, robust off, over one tree of all triangles of the moment.  Its best mode is found anew for
+each kind of rays in each view, and is timed tracing alone: packets are filled before the clock starts.  Ours is timed
+as the call of a `World`, answers allocated and all.  Any hits are asked of shadow rays, and of those of `any_hit_rays`.
+Contestants take turns.  Goals that are missed are printed, and no failure; the exit code is 1 where too many answers
+are not those of Embree with robust on, or rays are not those of the frames.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from tests.bench.any_hit_rays import ANY_HITS
 from tests.bench.embree import embree_version
 from tests.bench.frame_times import KITCHEN, in_words, machine
 from tests.bench.frames import whole_frames
@@ -75,7 +76,9 @@ def measure(path: Path, options: argparse.Namespace) -> tuple[dict[str, Any], li
         found += contests(world, moment, options.size, rounds, options.trials, number)
     for table in (
         rays_table(path.name, options.size, found),
+        rays_table(path.name, options.size, found, ANY_HITS),
         views_table(path.name, found),
+        views_table(path.name, found, ANY_HITS),
         modes_table(path.name, found),
     ):
         print_table(table)

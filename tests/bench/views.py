@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.bench.any_hit_rays import ANY_HITS, any_hit_rays
 from tests.bench.contest import Embreex, Ours, Spread, differing, heats, oracle, race, second_core, thread_numbers
 from tests.bench.embree import EmbreeRays, EmbreeScene
 from tests.bench.rays import Surfaces, incoherent_rays, joined, mirror_rays, points_of, primary_rays, shadow_rays
@@ -19,8 +20,8 @@ SINGLE = "incoherent"  # the kind for which Embree's single-ray call is the meas
 
 @dataclass
 class Contest:
-    """One kind of rays in one view: seconds of each round, and how many answers differ from robust Embree's,
-    of ours and of the Embree that was timed."""
+    """One kind of rays in one view: seconds of each round, also for the nearest hits of those in ANY_HITS, and how many
+    answers differ from robust Embree's, of ours and of the Embree that was timed."""
 
     kind: str
     time: float
@@ -29,6 +30,7 @@ class Contest:
     ours: list[float]
     embree: list[float]
     two: list[float]
+    nearest: list[float]
     second_core: list[float]
     heats: dict[str, float]
     differing: int
@@ -56,12 +58,13 @@ def ray_sets(world: World, surfaces: Surfaces, time: float, size: int, seed: int
     scene = world.scene
     primary = primary_rays(scene.camera_at(time), size, size)
     points = points_of(surfaces, primary, world.closest_hits(primary))
-    lights = scene.light_positions(time).astype(np.float32)
+    shadow = [shadow_rays(points, light)[0] for light in scene.light_positions(time).astype(np.float32)]
     return {
         "primary": primary,
-        "shadow": joined([shadow_rays(points, light)[0] for light in lights]),
+        "shadow": joined(shadow),
         "mirror": mirror_rays(points),
         "incoherent": incoherent_rays(world.bounds(), size * size, seed),
+        **any_hit_rays(world, time, points, joined(shadow[:1]), size, seed),
     }
 
 
@@ -75,15 +78,16 @@ def contests(world: World, time: float, size: int, rounds: int, trials: int, see
     for kind, rays in ray_sets(world, surfaces, time, size, seed).items():
         if not len(rays.t_min):
             continue
-        closest = kind != "shadow"
+        closest = kind != "shadow" and kind not in ANY_HITS
         tried = heats(embree, rays, closest, trials)
         best = next(mode for mode in tried if kind != SINGLE or mode.width == 1)
         opponents: list[Any] = [EmbreeRays(embree, rays, closest, best)]
         if kind == SINGLE:
             opponents.append(Embreex(triangles, rays))
         ours = [Ours(world, rays, closest, threads) for threads in thread_numbers()]
-        times, core = race([*ours, *opponents], rounds, second_core if len(ours) > 1 else None)
-        against = times[len(ours) :]
+        nearest = [Ours(world, rays, True)] if kind in ANY_HITS else []
+        times, core = race([*ours, *opponents, *nearest], rounds, second_core if len(ours) > 1 else None)
+        against = times[len(ours) : len(ours) + len(opponents)]
         truth = oracle(robust, rays, closest)
         winner = int(np.median(against, axis=1).argmin())
         made.append(
@@ -95,6 +99,7 @@ def contests(world: World, time: float, size: int, rounds: int, trials: int, see
                 ours=times[0].tolist(),
                 embree=against[winner].tolist(),
                 two=times[1].tolist() if len(ours) > 1 else [],
+                nearest=times[-1].tolist() if nearest else [],
                 second_core=core.tolist() if len(ours) > 1 else [],
                 heats={str(mode): len(rays.t_min) / seconds / 1e6 for mode, seconds in tried.items()},
                 differing=differing(rays, ours[-1].answers(), truth),

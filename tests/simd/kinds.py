@@ -9,6 +9,7 @@ import numba
 import numpy as np
 import pytest
 
+from tests.sweeps import cases
 from tracer import simd
 from tracer.simd import (
     mask8,
@@ -36,9 +37,16 @@ KINDS = [
         ("f32x8", mask8, 8, F32), ("f32x16", mask16, 16, F32), ("i32x8", mask8, 8, I32), ("i32x16", mask16, 16, I32),
     )
 ]  # fmt: skip
-of_each_kind = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-of_floats = pytest.mark.parametrize("kind", KINDS[:2], ids=lambda kind: kind.name)
-of_integers = pytest.mark.parametrize("kind", KINDS[2:], ids=lambda kind: kind.name)
+
+
+def of(kinds: list[Kind]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("kind", kinds, ids=lambda kind: kind.name)
+
+
+# In every run each type of numbers and each number of lanes once: compiling a test for a kind is all its time.
+of_each_kind = of(cases([KINDS[0], KINDS[3]], KINDS))
+of_floats = of(cases(KINDS[1:2], KINDS[:2]))
+of_integers = of(cases(KINDS[2:3], KINDS[2:]))
 
 
 def compiled(function: Callable) -> Any:

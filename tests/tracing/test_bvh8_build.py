@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,9 +15,7 @@ from tests.tracing.worlds import random_corners, scene
 from tracer.geometry.building import CANCELLED, DONE
 from tracer.geometry.bvh8.build import build_tree
 from tracer.geometry.primitives import triangle_rows
-from tracer.geometry.wide_tree.binary import grow, make_items, put_triangles
 from tracer.geometry.wide_tree.build import SMALL, build_topology
-from tracer.geometry.wide_tree.collapse import LEAF_COST, NODE_COST, TRIANGLE_COST
 from tracer.scene.model import Cancelled
 
 SHAPES = {
@@ -70,44 +66,6 @@ def test_a_tree_is_worth_its_name():
     assert cost(tree) < 18  # of leaves in the order given it would be 1200
     assert found.depth <= 8
     assert len(found.leaves) / len(found.nodes) > 5  # nodes are well filled
-
-
-@pytest.mark.parametrize("n", [1, 2, 9, 40, 200])
-def test_no_way_to_collapse_a_binary_tree_is_cheaper(n):
-    rows = triangle_rows(random_corners(np.random.default_rng(n), n, 0.2))
-    items, stack = make_items(n), np.zeros((50, 5), np.int64)
-    stack[0, 1] = n
-    put_triangles(items, rows, 0, n)
-    assert grow(items, stack, 1, 1000, 48, 2, np.zeros(2, np.int64)) == 0
-    sides = -(items.nodes[:, :3] + items.nodes[:, 3:6]).astype(np.float64)
-    areas, words = (sides * np.roll(sides, 1, axis=1)).sum(1), items.nodes.view(np.int32)
-
-    def weight(node: int) -> int:
-        return words[node, 7] or weight(node + 1) + weight(words[node, 6])
-
-    def leaf(node: int) -> float:
-        return areas[node] * (LEAF_COST + TRIANGLE_COST * weight(node)) if weight(node) <= 8 else np.inf
-
-    @cache
-    def cheapest(node: int, slots: int) -> float:
-        """Of so many slots, in a node above."""
-        if words[node, 7]:
-            return leaf(node)
-        if slots == 1:
-            return min(leaf(node), NODE_COST * areas[node] + opened(node, 8))
-        return min(cheapest(node, slots - 1), opened(node, slots))
-
-    def opened(node: int, slots: int) -> float:
-        return min(cheapest(node + 1, k) + cheapest(words[node, 6], slots - k) for k in range(1, slots))
-
-    expected = areas[0] + (leaf(0) if words[0, 7] else opened(0, 8))
-    tree = build_tree(rows, NO_BOXES)
-    codes, boxes = tree.nodes.view(np.int32)[:, 48:56], tree.nodes[:, :48].reshape(-1, 6, 8).astype(np.float64)
-    sides, spent = boxes[:, 3:] - boxes[:, :3], areas[0]
-    for area, code in zip((sides * np.roll(sides, 1, axis=1)).sum(1).ravel(), codes.ravel(), strict=True):
-        count = tree.blocks.view(np.int32)[~code, 86] if code < -1 else 0
-        spent += area * (NODE_COST if code >= 0 else LEAF_COST + TRIANGLE_COST * count if count else 0)
-    assert spent == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize("depth", [10, 14, 40])

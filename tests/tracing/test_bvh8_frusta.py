@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.sweeps import ALL
 from tracer.geometry.bvh8.packet import MEMORY, fill, lanes_inside, open_vectors
 from tracer.geometry.bvh8.packet_group import box_at, boxes_at, entering, frusta_of, group_of, lead_of, reaches_of
 from tracer.geometry.bvh8.placed import child_planes
@@ -87,6 +88,7 @@ def _boxes(rng: np.random.Generator, rays: Rays, count: int) -> np.ndarray:
     return nodes
 
 
+@pytest.mark.skipif(not ALL, reason="left to make test-all: answers are held against those of every leaf")
 @pytest.mark.parametrize("kind", ["from one point", "apart"])
 def test_what_a_frustum_refuses_all_its_rays_refuse(kind: str):
     rng, found = np.random.default_rng(5), np.zeros(5, np.int64)

@@ -59,7 +59,7 @@ def assert_placed(world: tracer.World, time: float, rounding: float = 2e-7) -> N
     assert world.placed.has_dynamic == (not np.isnan(rows).all() or not np.isnan(boxes).all())
 
 
-@pytest.mark.parametrize("name", cases(SCENES[1:], SCENES))
+@pytest.mark.parametrize("name", cases(SCENES[2:], SCENES))
 def test_what_moves_and_deforms_is_where_the_animation_puts_it(bart, name):
     """And the tree is that of a world that never was at any other time."""
     content = loaded(bart / name)

@@ -159,16 +159,6 @@ def test_answers_do_not_depend_on_the_company_in_random_scenes():
     check()
 
 
-@pytest.mark.parametrize("kind", ["primary", "shadow", "mirror", "incoherent"])
-@pytest.mark.parametrize("name, number", VIEWS)
-def test_answers_do_not_depend_on_the_company_in_views(bart: Path, name: str, number: int, kind: str):
-    world, _, kinds = view(bart / name, number)
-    rays = kinds[kind]
-    some = np.random.default_rng(1).integers(0, len(rays.t_min) - 700, 3)
-    near = np.concatenate([np.arange(first, first + 700) for first in some])
-    assert_alone_or_not(world, chosen(rays, near), chosen(kinds["incoherent"], np.arange(300)), 3)
-
-
 @pytest.mark.parametrize("n", [16, 128, 304])
 def test_rays_without_a_direction_in_common_visit_the_same_in_any_company(n: int):
     """For the nearest hits, as many nodes are opened and leaves tested as in two halves."""

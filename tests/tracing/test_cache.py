@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.scenes import world_of
 from tests.sweeps import ACCELERATORS, crossed
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.same import assert_only_asked_less
@@ -49,7 +47,7 @@ def test_what_is_believed_the_trees_say_too(accelerator: str):
     """Rays that pass a triangle near its edges and corners, on either side, and that begin or end near it."""
     counted = np.zeros(2, np.int64)
 
-    @quickly(80)
+    @quickly(30)
     @given(
         st.integers(0, 2**32 - 1), st.sampled_from([1e-9, 1e-3, 1.0, 1.0, 1e3, 1e9]), st.sampled_from([0.0, 1.0, 40.0])
     )
@@ -76,7 +74,7 @@ def test_what_is_believed_the_trees_say_too(accelerator: str):
         counted[:] += sure.sum(), (blocked & ~sure).sum()
 
     check()
-    assert counted.min() > 1500  # both what is believed and what had to be asked
+    assert counted.min() > 500  # both what is believed and what had to be asked
 
 
 def test_rays_through_the_inside_of_a_triangle_are_believed():
@@ -133,41 +131,6 @@ def test_frames_of_random_scenes_are_those_without_a_cache(
 
     check()
     assert hits > 1000
-
-
-@pytest.mark.parametrize(("method", "accelerator"), crossed(["cells", "none"], ACCELERATORS))
-def test_frames_of_kitchen_are_those_without_a_cache(bart: Path, method: str, accelerator: str):
-    world = world_of(bart / "kitchen" / "kitchen.aff", accelerator)
-    kitchen = world.scene
-    settings = tracer.Settings(72, 72, 10, method, verify=True, record_lights=True, accelerator=accelerator)
-    without = tracer.Renderer(kitchen, settings, world=world)
-    cached = tracer.Renderer(kitchen, replace(settings, method=method + "+cache"), world=world)
-    for number in range(395, 398):
-        frame = cached.render(kitchen.frame_time(number))
-        assert_only_asked_less(frame, without.render(kitchen.frame_time(number)))
-    shadow = frame.statistics.shadow
-    assert shadow.cache_hits > 0.1 * (shadow.rays + shadow.cache_hits)
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_certified_pictures_are_those_without_a_cache(accelerator: str):
-    hits = 0
-
-    @quickly(5)
-    @given(walks(), st.integers(0, 2))
-    def check(walk: Walk, depth: int) -> None:
-        nonlocal hits
-        settings = tracer.Settings(48, 40, depth, "none", threads=2, verify=True, accelerator=accelerator)
-        none = tracer.Renderer(walk.scene, settings)
-        cached = tracer.Renderer(walk.scene, replace(settings, method="certified+cache"))
-        for time, camera in walk.frames:
-            frame = cached.render(time, camera)
-            assert frame.color.tobytes() == none.render(time, camera).color.tobytes()
-            assert frame.statistics.shadow.wrong == 0
-            hits += frame.statistics.shadow.cache_hits
-
-    check()
-    assert hits > 100
 
 
 LIGHT = (0.0, 0.0, 20.0)

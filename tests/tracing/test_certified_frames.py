@@ -7,15 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import tracer
 from tests.scenes import loaded, world_of
-from tests.sweeps import ACCELERATORS, cases, crossed
-from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, with_lamps
-from tests.tracing.same import contents
-from tests.tracing.worlds import certificates_of
+from tests.sweeps import ACCELERATORS, cases
+from tests.tracing.nasty_worlds import nasty_walk
 from tracer.neighbours.certified.cost_model import CostModel
 
 SCENES = Path(__file__).resolve().parents[2] / "assets" / "scenes"
@@ -39,49 +36,6 @@ def _count(seen: Counter[str], frame: tracer.Frame) -> None:
     shadow = frame.statistics.shadow
     seen.update({name: getattr(shadow, name) for name in ("due", "culled", "dynamic_only", "candidates_only")})
     seen["certificates"] += frame.statistics.certificates
-
-
-def _differing(walk: NastyWalk, seen: Counter[str], **settings: Any) -> list[str]:
-    """Where a walk's pictures are not the same."""
-    none, certified = _renderers(walk.scene, **settings)
-    result = []
-    for number, (time, camera) in enumerate(walk.frames):
-        expected, frame = none.render(time, camera), certified.render(time, camera)
-        if expected.color.tobytes() != frame.color.tobytes():
-            pixels = int((expected.color != frame.color).any(axis=2).sum())
-            result.append(f"seed {walk.seed}, frame {number}, {settings['accelerator']}: {pixels} pixels differ")
-        _count(seen, frame)
-    return result
-
-
-@pytest.mark.parametrize(("method", "accelerator"), crossed(["certified", "certified+cache"], ACCELERATORS))
-def test_pictures_of_nasty_scenes_are_those_without_culling(method: str, accelerator: str):
-    """Moving cameras, lights and objects."""
-    settings = {"method": method, "width": 24, "height": 24, "depth": 3, "accelerator": accelerator}
-    seen: Counter[str] = Counter()
-    assert not [wrong for seed in range(cases(14, 40)) for wrong in _differing(nasty_walk(seed), seen, **settings)]
-    assert min(seen[name] for name in ("culled", "dynamic_only", "candidates_only", "certificates")) > 1000
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_of_what_rests_flattened_or_stretched_are_those_without_culling(accelerator: str):
-    """Of seeds 6, 7, 12 and 18 they were not, on the kd-tree, to whose objects rays are transformed."""
-    seeds = cases((6, 7, 12, 18, 0, 1, 2, 3), range(200))
-    settings = {"method": "certified", "width": 40, "height": 40, "depth": 2, "accelerator": accelerator}
-    seen: Counter[str] = Counter()
-    assert not [wrong for seed in seeds for wrong in _differing(flattened_walk(seed), seen, **settings)]
-    certain = accelerator == "bvh8"  # in the kd-tree, most of it is taken to move
-    told = ("dynamic_only", "culled", "candidates_only") if certain else ("due",)
-    assert min(seen[name] for name in told) > 1000
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_by_nasty_lamps_are_those_without_culling(accelerator: str):
-    settings = {"method": "certified", "width": 24, "height": 24, "depth": 2, "accelerator": accelerator}
-    seen: Counter[str] = Counter()
-    walks = [with_lamps(nasty_walk(seed)) for seed in range(200, cases(208, 240))]
-    assert not [wrong for walk in walks for wrong in _differing(walk, seen, **settings)]
-    assert min(seen[name] for name in ("culled", "dynamic_only", "certificates")) > 1000
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
@@ -130,41 +84,6 @@ def test_a_picture_of_many_tiles_requests_and_certifies_the_same_with_any_number
     assert counted(4) == alone
 
 
-def _everything(walk: NastyWalk, threads: int, accelerator: str) -> list[dict]:
-    """All that a walk leaves behind, frame by frame."""
-    settings = tracer.Settings(
-        80, 40, 3, "certified", accelerator=accelerator, threads=threads, verify=True, record_lights=True
-    )
-    certified, result = tracer.Renderer(walk.scene, settings, cost_model=EAGER), []
-    for time, camera in walk.frames:
-        held = contents(certified.render(time, camera))
-        result.append(held)
-        store = certificates_of(certified)
-        if store is None:
-            continue
-        cells = store.cells
-        used, named = int(cells.used[0]), int(cells.named[0])
-        for name in ("words", "child", "parent", "owner", "place", "lists"):
-            held[f"cells: {name}"] = getattr(cells, name)[1:used].copy()
-        held["cells: names"] = cells.names[:named].copy()
-    return result
-
-
-@pytest.mark.parametrize(("lights", "accelerator"), crossed([0, 33], ACCELERATORS))  # 33: more than words have room for
-def test_pictures_counters_and_cells_are_the_same_for_any_number_of_threads(lights: int, accelerator: str):
-    for seed in (6, 16) if lights else (1, 5, 9):
-        walk = nasty_walk(seed, lights, frames=3)
-        runs = {threads: _everything(walk, threads, accelerator) for threads in (1, 3)}
-        for threads in (3,):
-            for number, (one, other) in enumerate(zip(runs[1], runs[threads], strict=True)):
-                for name, value in one.items():
-                    where = f"{name} of seed {seed}, frame {number}, {threads} threads"
-                    if isinstance(value, np.ndarray):
-                        assert value.tobytes() == other[name].tobytes(), where
-                    else:
-                        assert value == other[name], where
-
-
 def _assert_frames_alike(path: Path, frames: list[int], size: int, depth: int) -> None:
     scene = loaded(path)
     none, certified = _renderers(scene, width=size, height=size, depth=depth, accelerator="bvh8")
@@ -181,7 +100,3 @@ def _assert_frames_alike(path: Path, frames: list[int], size: int, depth: int) -
 def test_frames_of_bart_are_those_without_culling(bart: Path, name: str):
     """Neighbours, and cuts from one end of the path to the other."""
     _assert_frames_alike(bart / name, [0, 1, 150, 151], 72, 10)
-
-
-def test_frames_of_the_default_scene_are_those_without_culling():
-    _assert_frames_alike(SCENES / "default.aff", [0, 1, 10, 11], 72, 10)

@@ -10,7 +10,7 @@ import pytest
 
 import tracer
 from tests.sweeps import ACCELERATORS, cases
-from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, static_part, with_lamps
+from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.spaces import environment_store, point_lamps
 from tests.tracing.worlds import scene, wall
 from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
@@ -20,9 +20,7 @@ from tracer.geometry.world import World
 from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_grid
 from tracer.neighbours.environments.store import CANDIDATES
 from tracer.scene.lights import Light
-from tracer.scene.load import load_scene
 from tracer.settings import Settings
-from viewer.util.resources import embedded_scenes
 
 
 def test_a_point_is_in_the_box_of_its_cell_by_either_way_down():
@@ -81,49 +79,6 @@ def test_whatever_is_proved_of_a_cell_holds_for_the_rays_into_it(accelerator: st
     assert min(proved[name] for name in ("hidden", "lit", "blockers")) > cases(30, 1000), proved
 
 
-def _compare(walk: NastyWalk, method: str, seen: Counter[str], settings: Settings) -> None:
-    world = World(walk.scene, walk.scene.time_range[0], settings.accelerator)
-    none, other = (
-        tracer.Renderer(walk.scene, replace(settings, method=name), world=world) for name in ("none", method)
-    )
-    for number, (time, camera) in enumerate(walk.frames):
-        expected, frame = none.render(time, camera), other.render(time, camera)
-        differing = int((expected.color != frame.color).any(axis=2).sum())
-        assert differing == 0, f"seed {walk.seed}, frame {number}, {method}, {settings.accelerator}: {differing} pixels"
-        shadow = frame.statistics.shadow
-        for name in ("due", "culled", "dynamic_only", "candidates_only", "passed_over"):
-            seen[name] += getattr(shadow, name)
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_of_nasty_scenes_are_those_without_culling(accelerator: str):
-    """Lights that jump, objects that drift, stop and rest, lamps, many lights; with other methods as well."""
-    seen = Counter[str]()
-    settings = Settings(width=48, height=36, depth=2, accelerator=accelerator)
-    for seed in range(cases(4, 400)):
-        method = ("lie-exact", "lie-exact+rest", "certified+lie-exact", "lie-exact+cache")[seed % 4]
-        _compare(nasty_walk(seed, frames=4), method, seen, replace(settings, threads=1 + seed % 2))
-    for seed in range(cases(1, 100)):
-        _compare(flattened_walk(seed, frames=3), "lie-exact+rest", seen, settings)
-        _compare(with_lamps(nasty_walk(7 + seed, frames=3)), "lie-exact", seen, settings)
-        for method in ("lie-exact", "certified+lie-exact"):
-            _compare(nasty_walk(5 + seed, MAX_CULLED_LIGHTS + 5, frames=3), method, seen, settings)
-    assert seen["candidates_only"] > 0.2 * seen["due"] and seen["passed_over"] > 0.02 * seen["due"], seen
-
-
-def test_counters_do_not_depend_on_threads_and_modes_are_those_beside_none():
-    walk = nasty_walk(3)
-    settings = Settings(width=96, height=64, depth=1, method="lie-exact", modes=True, verify=True)
-    one, two, none = (
-        tracer.Renderer(walk.scene, replace(settings, threads=threads, method=method))
-        for threads, method in ((1, "lie-exact"), (2, "lie-exact"), (1, "none"))
-    )
-    for time, camera in walk.frames:
-        a, b, c = (renderer.render(time, camera) for renderer in (one, two, none))
-        assert a.statistics.shadow == b.statistics.shadow and a.statistics.shadow.wrong == 0
-        assert np.array_equal(a.modes, c.modes) and a.color.tobytes() == c.color.tobytes()
-
-
 def test_with_samples_it_is_wrong_now_and_then_and_verify_counts():
     wrong = right = 0
     for seed in range(4):
@@ -178,17 +133,3 @@ def test_what_is_shown_of_cells_is_true_and_lights_behind_a_wall_are_passed_over
         lit = state == NON_SHADOW
         assert (frame.reached[..., light][lit] == frame.asked[..., light][lit]).all()
     assert shown[FULL_SHADOW] > 0.4 * shown.total() and shown[CANDIDATES] > 0, shown
-
-
-def test_embedded_scenes_look_the_same():
-    for name, methods in (("figure3", ("voxels", "lie-exact")), ("default", ("certified+lie-exact",))):
-        made = load_scene(embedded_scenes()[name])
-        settings = Settings(width=48, height=36, depth=2, method="none", threads=1)
-        world = World(made)
-        none = tracer.Renderer(made, settings, world=world).render()
-        for method in methods:
-            renderer = tracer.Renderer(made, replace(settings, method=method, verify=True), world=world)
-            for _ in range(2):
-                frame = renderer.render()
-                assert frame.statistics.shadow.wrong == 0, (name, method)
-                assert frame.color.tobytes() == none.color.tobytes(), (name, method)

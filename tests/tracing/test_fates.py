@@ -18,10 +18,7 @@ from tracer.settings import RECORDS
 from viewer.util.resources import embedded_scenes
 
 SETTINGS = tracer.Settings(48, 40, depth=0, threads=2, record_fates=True)
-METHODS = (
-    *("paper", "cells", "certified", "auto", "paper+cache", "paper+lightbuffer", "lightbuffer", "voxels", "lie-exact"),
-    *("none", "certified+cache", "paper+rest"),
-)
+METHODS = (*("none", "cells", "certified+cache", "auto", "paper+rest", "paper+lightbuffer", "voxels", "lie-exact"),)
 BY_MODES = {Fate.PARTLY_OCCLUDED, Fate.PARTIAL_SHADOW, Fate.NOT_SEEN_WHOLE, Fate.DYNAMIC}
 
 
@@ -123,7 +120,7 @@ def test_reasons_of_the_papers_modes_are_given_for_methods_that_cull_by_them_alo
     assert not BY_MODES & {Fate(fate) for fate in np.unique(fates_of(frame))}
 
 
-@pytest.mark.parametrize("method", ["none", "certified+cache", "lightbuffer", "paper"])
+@pytest.mark.parametrize("method", ["certified+cache", "paper"])
 def test_a_moving_shadow_is_where_light_comes_once_what_moves_is_gone(method: str) -> None:
     scene = loaded(embedded_scenes()["default"])
     renderer = tracer.Renderer(scene, replace(SETTINGS, width=72, height=60, method=method, record_lights=True))

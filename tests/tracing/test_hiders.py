@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.sweeps import ACCELERATORS, cases, crossed
-from tests.tracing.nasty_worlds import nasty_walk, with_lamps
-from tests.tracing.same import assert_same
+from tests.sweeps import ACCELERATORS, crossed
 from tests.tracing.shades import going, kite
 from tests.tracing.worlds import quad, scene, wall
 from tracer.culling.modes import MAX_CULLED_LIGHTS
@@ -82,27 +80,3 @@ def test_moving_objects_are_asked_and_moving_lamps_followed():
         assert renderer.render(time).color.tobytes() == picture.tobytes(), time
     alone = Renderer(replace(given, objects=given.objects[:1]), truth.settings).render(time).color
     assert (alone != picture).any(axis=-1).sum() > 20, "the object is nowhere to be seen"
-
-
-def test_pictures_and_counters_repeat_for_any_number_of_threads():
-    one, three = (Renderer(tiled(), replace(SETTINGS, threads=n, width=100)) for n in (1, 3))
-    for _ in range(2):
-        assert_same(one.render(0.0), three.render(0.0), "threads")
-
-
-def test_nasty_worlds_under_lamps_of_many_samples():
-    culled = 0
-    for seed in range(cases(2, 80)):
-        walk = with_lamps(nasty_walk(100 + seed, lights=MAX_CULLED_LIGHTS + 1, frames=2))
-        for accelerator in ACCELERATORS:
-            settings = Settings(
-                width=32, height=24, depth=2, accelerator=accelerator, threads=1, lamp_samples=20, verify=True
-            )
-            certified = Renderer(walk.scene, replace(settings, method="certified"))
-            none = Renderer(walk.scene, replace(settings, method="none", verify=False))
-            for time, camera in walk.frames:
-                frame, truth = certified.render(time, camera), none.render(time, camera)
-                assert frame.color.tobytes() == truth.color.tobytes(), (seed, accelerator, time)
-                assert frame.statistics.shadow.wrong == 0, (seed, accelerator, time)
-                culled += frame.statistics.shadow.culled
-    assert culled > 5_000

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from tests.sweeps import ACCELERATORS
-from tests.tracing.same import assert_same
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
 from tests.tracing.worlds import random_corners, scene
 from tracer.culling.modes import FULLY_RENDERED, ShadowMode
@@ -120,17 +119,6 @@ def test_light_falls_off_with_the_square_of_the_distance():
     assert lit - ambient == pytest.approx([0.8, 0.4, 0.2], rel=1e-3)
 
 
-@pytest.mark.parametrize("method", ["auto", "certified", "certified+cache", "free", "none+cache"])
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_exact_methods_give_the_picture_of_none(method: str, accelerator: str):
-    """Also those that know nothing of lamps: they answer for the point light alone."""
-    settings = replace(SETTINGS, accelerator=accelerator)
-    lamps = room(LAMP, POINT)
-    renderer, truth = Renderer(lamps, replace(settings, method=method)), Renderer(lamps, settings)
-    for time in (0.0, 0.1, 0.2):
-        assert renderer.render(time).color.tobytes() == truth.render(time).color.tobytes(), time
-
-
 SHAPES = {
     "sphere": {"radius": 0.3},
     "rectangle": {"edges": ((0.6, 0.0, 0.0), (0.0, 0.3, 0.2))},
@@ -223,14 +211,6 @@ def test_what_moves_beside_lamps_leaves_no_old_shadow(method: str):
     for time in (0.0, 0.4, 0.8, 1.2, 1.6, 2.4, 2.8, 3.2):
         shadow = renderer.render(time).statistics.shadow
         assert shadow.wrong <= allowed * shadow.due, time
-
-
-def test_pictures_repeat_for_any_number_of_threads():
-    lamps = room(LAMP, POINT)
-    settings = replace(SETTINGS, method="paper", verify=True, record_work=True)
-    for time in (0.0, 0.1):
-        one, four = (Renderer(lamps, replace(settings, threads=n)).render(time) for n in (1, 4))
-        assert_same(one, four, f"at {time}")
 
 
 def test_a_verified_frame_counts_wrong_samples():

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import tracer
 from tests.sweeps import ACCELERATORS, crossed
 from tests.tracing.nasty_worlds import nasty_walk
-from tests.tracing.random_worlds import Walk, quickly, walks
+from tests.tracing.random_worlds import quickly
 from tests.tracing.shades import BEHIND, floor, going, kite, roof
 from tests.tracing.worlds import nasty_triangles, scene
 from tracer.culling.shadow_testing import LIGHT_MARGIN
@@ -140,48 +140,6 @@ def test_what_moves_is_no_nearer_than_depths_say():
             way = point - light
             assert depths[cell_of(way, 16)] <= np.abs(way).max()
     assert (depths > 1e30).any(), "not everywhere is something that moves"
-
-
-METHODS = ("lightbuffer", "paper+rest+lightbuffer", "certified+lightbuffer")
-
-
-@pytest.mark.parametrize(("method", "accelerator"), crossed(METHODS, ACCELERATORS))
-def test_nasty_frames_are_those_of_none(method: str, accelerator: str):
-    """Lights and objects that move, rest, start and stop, quadrics, and a number of threads."""
-    saved = 0
-    for seed in range(4):
-        walk = nasty_walk(seed, frames=4)
-        settings = replace(SETTINGS, accelerator=accelerator, threads=1 + seed % 3, modes=True)
-        none = tracer.Renderer(walk.scene, settings)
-        looked_up = replace(settings, method=method, verify=True, light_buffer_side=64)
-        buffered = tracer.Renderer(walk.scene, looked_up)
-        for time, camera in walk.frames:
-            expected, frame = none.render(time, camera), buffered.render(time, camera)
-            shadow = frame.statistics.shadow
-            saved += shadow.due - shadow.rays
-            if not method.startswith("paper"):
-                assert shadow.wrong == 0
-                assert frame.color.tobytes() == expected.color.tobytes()
-                assert np.array_equal(frame.lit, expected.lit)
-                assert np.array_equal(frame.modes, expected.modes)
-    assert saved > 1000
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_random_frames_are_those_of_none_for_any_number_of_threads(accelerator: str):
-    @quickly(6)
-    @given(walks(), st.integers(1, 4))
-    def check(walk: Walk, threads: int) -> None:
-        settings = replace(SETTINGS, accelerator=accelerator, verify=True, light_buffer_side=32, method="lightbuffer")
-        none = tracer.Renderer(walk.scene, replace(settings, method="none", verify=False))
-        several = [tracer.Renderer(walk.scene, replace(settings, threads=count)) for count in (1, threads)]
-        for time, camera in walk.frames:
-            expected, (one, other) = none.render(time, camera), (r.render(time, camera) for r in several)
-            assert one.color.tobytes() == other.color.tobytes() == expected.color.tobytes()
-            assert one.statistics.shadow == other.statistics.shadow and one.statistics.shadow.wrong == 0
-            assert one.statistics.certificate_tests == other.statistics.certificate_tests
-
-    check()
 
 
 def paused_scene(**extra) -> tracer.Scene:

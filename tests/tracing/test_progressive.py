@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given
 
 import tracer
-from tests.sweeps import ACCELERATORS
+from tests.sweeps import ACCELERATORS, cases
 from tests.tracing.random_worlds import Walk, quickly, walks
 from tests.tracing.worlds import quad, quadrics, scene
+from tracer.geometry.accelerators import BVH8
 from tracer.methods.adaptive_policy import AdaptivePolicy
 from tracer.progressive import BEYOND, HALVES, LEVELS, Parts, after
 from tracer.scene.model import SPHERE, Camera, Cancelled, Material, Texture
@@ -39,7 +40,7 @@ def assert_whole(frame: tracer.Frame, expected: tracer.Frame, where: str) -> Non
         assert getattr(shadow, name) == getattr(other, name), f"{name} {where}"
 
 
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
+@pytest.mark.parametrize("accelerator", cases((BVH8,), ACCELERATORS))
 @given(walk=walks())
 @quickly(5)
 def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: Walk):

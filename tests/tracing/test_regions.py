@@ -8,17 +8,13 @@ import numpy as np
 import pytest
 
 from tests.sweeps import ACCELERATORS, cases
-from tests.tracing.nasty_worlds import nasty_walk, with_lamps
-from tests.tracing.same import assert_same
 from tests.tracing.worlds import quad, scene, wall
-from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
 from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.inspect.ray_tree import ray_tree
-from tracer.methods.certified_lights import CertifiedLights
 from tracer.neighbours.regions.store import RegionStore, make_grid, region_boxes
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
@@ -211,13 +207,6 @@ def test_other_lamps_are_certified_anew():
         assert frame.statistics.shadow.passed_over > 0, change
 
 
-def test_pictures_and_counters_repeat_for_any_number_of_threads():
-    for method in ("certified", "certified+cache"):
-        one, three = (Renderer(rooms(), replace(SETTINGS, method=method, threads=n)) for n in (1, 3))
-        for time in (0.0, 0.0):
-            assert_same(one.render(time), three.render(time), f"{method} at {time}")
-
-
 def test_a_budget_of_certificates_is_kept():
     renderer = Renderer(rooms(), replace(SETTINGS, certificates=100))
     made = [renderer.render(0.0).statistics.certificates for _ in range(3)]
@@ -243,19 +232,3 @@ def test_reasons_name_what_hides_a_light():
     hidden = [(s, *one) for s in rays for one in s.reasons.items() if one[1].verdict is Verdict.PASSED_OVER]
     assert len(hidden) > 20 and not any(s.lit[place] for s, place, _ in hidden)
     assert all(2 <= why.named[0] < 42 for _, _, why in hidden), "a triangle of the wall"
-
-
-def test_nasty_worlds_under_many_lamps_look_as_by_none():
-    passed_over = 0
-    for seed in range(cases(4, 60)):
-        walk = nasty_walk(seed, lights=MAX_CULLED_LIGHTS + 5, frames=2)
-        walk = with_lamps(walk) if seed % 2 else walk
-        for accelerator in ACCELERATORS:
-            settings = Settings(width=36, height=28, depth=2, accelerator=accelerator, threads=1)
-            certified, none = (Renderer(walk.scene, replace(settings, method=m)) for m in ("certified", "none"))
-            assert isinstance(certified.state.method("certified"), CertifiedLights)
-            for time, camera in walk.frames:
-                frame, truth = certified.render(time, camera), none.render(time, camera)
-                assert frame.color.tobytes() == truth.color.tobytes(), (seed, accelerator, time)
-                passed_over += frame.statistics.shadow.passed_over
-    assert passed_over > 0

@@ -32,10 +32,9 @@ def render(world: tracer.World, settings: tracer.Settings, first: int, count: in
 
 
 WALKS = (
-    ("kitchen/kitchen.aff", 395, cases(3, 10), cases(96, 320), "paper", False),
-    ("robot/Robot.aff", 0, 3, 80, "cells", True),
-    ("museum/museum5.aff", 0, 3, 80, "paper+cache", True),
-    *cases((), (("robot/Robot.aff", 0, 3, 96, "paper", True), ("robot/Robot.aff", 0, 3, 96, "paper+cache", False))),
+    ("museum/museum5.aff", 0, 2, 80, "paper+cache", True),
+    ("kitchen/kitchen.aff", 395, cases(2, 10), cases(80, 320), "paper", False),
+    *cases((), [("robot/Robot.aff", 0, 3, 96, method, True) for method in ("cells", "paper", "paper+cache")]),
 )
 
 

@@ -181,15 +181,6 @@ def test_what_rests_is_followed_through_other_methods_and_resolutions():
     assert moving.tolist() == [False] * 3 + [True] * 2 + [False] * 4 + [True] + [False] * 4
 
 
-def test_modes_are_the_same_for_any_number_of_threads(accelerator):
-    settings = replace(SETTINGS, width=130, height=90, accelerator=accelerator, verify=False)
-    renderers = [tracer.Renderer(SAILING, replace(settings, threads=threads)) for threads in (1, 2, 4)]
-    for time in GOING:
-        one, *others = (renderer.render(time) for renderer in renderers)
-        for other in others:
-            assert np.array_equal(one.modes, other.modes) and np.array_equal(one.color, other.color)
-
-
 def test_pictures_are_those_without_culling_in_random_scenes():
     """But for what the paper's method gets wrong, which the reference picture shows right."""
     rested = 0

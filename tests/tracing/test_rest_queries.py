@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.sweeps import ACCELERATORS
+from tests.sweeps import EVERY_ACCELERATOR
 from tests.tracing import brute
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
@@ -22,7 +22,7 @@ from tracer.geometry.rays import Rays
 from tracer.scene.model import SPHERE
 
 
-@pytest.fixture(params=ACCELERATORS)
+@pytest.fixture(params=EVERY_ACCELERATOR)
 def accelerator(request) -> str:
     return request.param
 

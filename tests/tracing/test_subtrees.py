@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
+from tests.sweeps import cases
 from tests.tracing.random_worlds import END, quickly, scenes
 from tests.tracing.rays_and_movers import movers, random_rays
 from tests.tracing.same import assert_same
@@ -111,10 +112,12 @@ def test_what_is_measured_finds_all_built() -> None:
     assert built(world).primitives == built(world).of
 
 
-DECIDED = [kind.name for kind in bases(True) if not Method.parse(kind.name).adaptive]  # by no measured time
+# By no measured time; in every run those that ask trees in ways of their own.
+DECIDED = [kind.name for kind in bases(True) if not Method.parse(kind.name).adaptive]
+ASKING = ["paper", "lightbuffer", "voxels", "lie-exact", "lightcuts-certified", "certified+cache+rest"]
 
 
-@pytest.mark.parametrize("method", [*DECIDED, "certified+cache+rest"])
+@pytest.mark.parametrize("method", cases(ASKING, [*DECIDED, "certified+cache+rest"]))
 def test_pictures_and_counters_are_those_of_a_tree_that_was_there(method: str) -> None:
     made = large(300)
     settings = tracer.Settings(width=32, height=24, depth=1, method=method, verify=True, threads=2)

@@ -8,15 +8,14 @@ import numpy as np
 
 import tracer
 from tests.sweeps import cases
-from tests.tracing.nasty_worlds import nasty_walk, static_part, with_lamps
-from tests.tracing.spaces import crossed_by, environment_store, point_lamps, voxel_store
+from tests.tracing.nasty_worlds import nasty_walk, static_part
+from tests.tracing.spaces import crossed_by, voxel_store
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
 from tracer.culling.rest import nothing_rests
 from tracer.culling.verdicts import Verdict
 from tracer.geometry.world import World
 from tracer.inspect.path_records import VERDICTS
 from tracer.inspect.ray_tree import ray_tree
-from tracer.neighbours.environments.octree import HIDDEN, OUTSIDE
 from tracer.neighbours.voxels.tell import Stop
 from tracer.scene.lights import LampTable, Light
 from tracer.visibility.grid import cube_at, index_of
@@ -68,41 +67,6 @@ def test_pictures_hold_the_states_that_they_found():
     store.update(table.at(places), nothing_rests(len(world.scene.objects)))
     store.classify(np.inf, 1)
     assert store.words is words and not np.array_equal(words, before), "what no picture holds is not copied"
-
-
-def test_cells_ask_all_lights_but_those_that_they_know_to_be_hidden():
-    rng, fewer = np.random.default_rng(3), 0
-    for seed, count in ((1, 3), (4, 5), (6, 40)):
-        walk = nasty_walk(seed, count)
-        made = with_lamps(walk).scene if seed == 4 else walk.scene
-        world = World(static_part(made))
-        lamps = (
-            point_lamps(made.light_positions(0.0))
-            if seed != 4
-            else LampTable(made.lights).at(made.light_positions(0.0))
-        )
-        rows = world.triangles_of(0).rows
-        low, high = (f(rows[:, :3].astype(np.float64), axis=0) for f in (np.min, np.max))
-        points = (low + rng.random((40, 3)) * (high - low)).astype(np.float32)
-        store = environment_store(world, lamps, points)
-        store._known[rng.integers(0, len(lamps.places), 2)] = False  # as if they had moved
-        cells = np.array([store.tree.leaf_at(point) for point in points], np.int32)
-        asked = store.asked_in(cells)
-        for cell, number in zip(cells.tolist(), asked.tolist(), strict=True):
-            (starts, lights), of = store.further.lists.arrays(), store.further.of[cell]
-            listed = set(lights[starts[of - 1] : starts[of]].tolist()) if of > 0 else set()
-            expected = 0
-            for light in range(len(lamps.places)):
-                known = store._known[light]
-                if light < store.held:
-                    looks = not known or store.codes[cell, light] != HIDDEN or light in listed
-                else:
-                    looks = not known or of == 0 or light in listed
-                expected += looks
-            assert number == expected, (seed, cell)
-            fewer += number < len(lamps.places)
-        assert store.asked_in(np.array([OUTSIDE, -1], np.int32)).tolist() == [len(lamps.places), -1]
-    assert fewer
 
 
 def test_culled_rays_say_what_their_voxels_and_cells_knew():

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
-import tracer
 from tests.sweeps import ACCELERATORS, cases
-from tests.tracing.nasty_worlds import flattened_walk, nasty_walk, static_part, with_lamps
+from tests.tracing.nasty_worlds import nasty_walk, static_part
 from tests.tracing.spaces import crossed_by, voxel_store
 from tests.tracing.worlds import scene, wall
-from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW, shadow_mode
+from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, shadow_mode
 from tracer.culling.rest import nothing_rests
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.primitives import triangle_rows
@@ -52,7 +49,7 @@ def test_less_memory_means_larger_voxels():
 
 def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
     rng = np.random.default_rng(5)
-    for seed in range(12):
+    for seed in range(cases(5, 12)):
         walk = nasty_walk(seed)
         world = World(static_part(walk.scene))
         store = voxel_store(world, world.scene.light_positions(0.0))
@@ -120,50 +117,6 @@ def test_a_wall_hides_the_voxels_behind_it_and_no_others():
 
 
 # --- frames ---------------------------------------------------------------------------------------
-
-
-def _compare(walk: Any, method: str, seen: Counter[str], **settings: Any) -> None:
-    world = World(walk.scene, walk.scene.time_range[0], settings["accelerator"])
-    none, other = (
-        tracer.Renderer(walk.scene, tracer.Settings(method=name, **settings), world=world) for name in ("none", method)
-    )
-    for number, (time, camera) in enumerate(walk.frames):
-        expected, frame = none.render(time, camera), other.render(time, camera)
-        differing = int((expected.color != frame.color).any(axis=2).sum())
-        assert differing == 0, f"seed {walk.seed}, frame {number}, {method}, {settings}: {differing} pixels"
-        shadow = frame.statistics.shadow
-        for name in ("due", "culled", "dynamic_only", "candidates_only"):
-            seen[name] += getattr(shadow, name)
-
-
-@pytest.mark.parametrize("accelerator", ACCELERATORS)
-def test_pictures_of_nasty_scenes_are_those_without_culling(accelerator: str):
-    """Lights that jump, objects that drift, stop and rest, lamps; wherever float32 has few digits left."""
-    seen = Counter[str]()
-    settings = {"width": 48, "height": 36, "depth": 2, "accelerator": accelerator}
-    for seed in range(cases(12, 400)):
-        method = ("voxels", "voxels+rest", "voxels+cache", "certified+voxels")[seed % 4]
-        _compare(nasty_walk(seed, frames=4), method, seen, threads=1 + seed % 2, **settings)
-    for seed in range(cases(2, 100)):
-        _compare(flattened_walk(seed, frames=3), "voxels+rest", seen, threads=1, **settings)
-    _compare(with_lamps(nasty_walk(7, frames=2)), "voxels", seen, threads=1, **settings)
-    _compare(nasty_walk(5, MAX_CULLED_LIGHTS + 3, frames=2), "voxels", seen, threads=2, **settings)
-    assert seen["culled"] > 0.005 * seen["due"] and seen["candidates_only"] > 0.2 * seen["due"], seen
-    assert seen["dynamic_only"] > 0.005 * seen["due"], seen
-
-
-def test_counters_do_not_depend_on_threads_and_modes_are_those_beside_none():
-    walk = nasty_walk(3)
-    settings = tracer.Settings(width=96, height=64, depth=1, method="voxels", modes=True, verify=True)
-    one, two, none = (
-        tracer.Renderer(walk.scene, replace(settings, threads=threads, method=method))
-        for threads, method in ((1, "voxels"), (2, "voxels"), (1, "none"))
-    )
-    for time, camera in walk.frames:
-        a, b, c = (renderer.render(time, camera) for renderer in (one, two, none))
-        assert a.statistics.shadow == b.statistics.shadow and a.statistics.shadow.wrong == 0
-        assert a.statistics.certificate_tests == b.statistics.certificate_tests
-        assert np.array_equal(a.modes, c.modes) and a.color.tobytes() == c.color.tobytes()
 
 
 def test_a_light_that_moves_is_classified_anew_and_others_are_not():

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tracer
-from tests.sweeps import ACCELERATORS, cases
+from tests.sweeps import EVERY_ACCELERATOR, cases
 from tests.tracing import brute, naive
 from tests.tracing.brute8 import meet_all8
 from tests.tracing.random_worlds import END, quickly, scenes
@@ -29,7 +29,7 @@ def random_rays(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarra
     return origins.astype(np.float32), directions.astype(np.float32)
 
 
-@pytest.fixture(params=ACCELERATORS)
+@pytest.fixture(params=EVERY_ACCELERATOR)
 def accelerator(request) -> str:
     return request.param
 
@@ -63,7 +63,7 @@ def test_queries_agree_with_float64_in_random_scenes(accelerator):
     """Triangles, spheres and cones, static, moving, vanishing and deforming."""
     compared: Counter[str] = Counter()
 
-    @quickly(40)
+    @quickly(20)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         world = tracer.World(made, time, accelerator)
@@ -84,7 +84,7 @@ def test_queries_agree_with_float64_in_random_scenes(accelerator):
                 compared[f"dynamic {kind}" if made.object_of(hits.primitive[i]) else kind] += 1
 
     check()
-    assert len(compared) == 4 and min(compared.values()) >= 10, compared
+    assert len(compared) == 4 and min(compared.values()) >= 5, compared
 
 
 def test_occluders_are_met_by_their_rays_alone(accelerator):

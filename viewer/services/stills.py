@@ -6,7 +6,7 @@ What the command `render`, films, figures and the window's own saved pictures ha
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -76,8 +76,10 @@ def times_before(scene: Scene, time: float, count: int) -> list[float]:
 def trace(
     renderer: Renderer, state: ViewState, everything: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, total: None, cancelled: Callable[[], bool] = lambda: False,
+    records: Iterable[Record] = (),
 ) -> Frame:  # fmt: skip
-    """The state's frame, after those before it; `everything`: with modes, and all lights recorded.
+    """The state's frame, after those before it; `everything`: with modes, and all lights recorded; `records` besides
+    those of its view.
 
     `on_frame` is told how many of these are done, before each.  Raises Cancelled."""
     scene, settings, view = renderer.scene, state.settings, state.draw.view
@@ -96,6 +98,7 @@ def trace(
     recorded = recording(view, settings.width * settings.height, len(scene.lights))
     recorded["verify"] |= settings.verify
     recorded["record_lights"] |= everything
+    recorded |= {one.value: True for one in records}
     renderer.settings = replace(settings, modes=modes, **recorded)
     frame = renderer.render(state.time, state.camera, cancelled)
     lacks_light = view.records is Record.LIGHTS and not recorded["record_lights"]
@@ -141,7 +144,7 @@ def fields_of(state: ViewState, scene: Scene) -> dict[str, Any]:
 def trace_methods(
     scene: Scene, state: ViewState, comparison: Comparison, world: World,
     on_frame: Callable[[str, int, int], None] = lambda method, done, total: None,
-    cancelled: Callable[[], bool] = lambda: False,
+    cancelled: Callable[[], bool] = lambda: False, records: Iterable[Record] = (),
 ) -> Shown:  # fmt: skip
     """Trace the frame of a state by each method, and by "none" as what is right, with modes of their own; the state's
     own method does not count.  Raises Cancelled.
@@ -156,7 +159,8 @@ def trace_methods(
         if not (found.culls or state.settings.modes or state.draw.view.of_modes):  # it learns nothing
             wanted = wanted.with_warmup(frames=())
         renderer = Renderer(scene, wanted.settings, world=world)
-        frames[method] = trace(renderer, wanted, on_frame=partial(on_frame, method), cancelled=cancelled)
+        told = partial(on_frame, method)
+        frames[method] = trace(renderer, wanted, on_frame=told, cancelled=cancelled, records=records)
     warmed = len(state.warmup.frames) + len(times_before(scene, state.time, state.warmup.of_path))
     shown = {method: frames[method] for method in comparison.methods}
     return Shown(scene, state, comparison, shown, frames["none"], warmed)

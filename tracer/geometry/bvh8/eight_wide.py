@@ -184,13 +184,9 @@ def nearest_quadric(r, best, trees, node, quadrics, enter, leave):
 
 
 @subkernel
-def any_quadric(r, far, trees, node, quadrics, enter, leave):
-    """The number of the first quadric, of those children of a node given as bits, that a ray hits nearer than far; or
-    MISS."""
-    while quadrics != 0:
-        c = lowest_bit(quadrics)
-        quadrics &= quadrics - 1
-        i = ~code_of(node, c) - QUADRIC
-        if _quadric(r, trees, i, lane_of(enter, c), lane_of(leave, c)) < far:
-            return np.int32(trees.triangles + i)
-    return np.int32(MISS)
+def any_quadric(r, far, trees, node, c):
+    """The number of the quadric that is a node's c-th child if a ray hits it nearer than far, or MISS."""
+    enter, leave = children_of(node, r, far)
+    i = ~code_of(node, c) - QUADRIC
+    t = _quadric(r, trees, i, lane_of(enter, c), lane_of(leave, c))
+    return np.int32(trees.triangles + i) if t < far else np.int32(MISS)

@@ -202,8 +202,8 @@ def open_rays(memory, v):
 
 
 @inlined
-def open_root(memory, v, trees, first, room, nearest, counts):
-    """Test sixteen rays against the children of a root and write a row of keys for each child.
+def open_root(memory, v, trees, first, room, counts):
+    """Test sixteen rays against the children of a root, for the nearest hits, and write a row of keys for each child.
 
     A key is the bits of the distance at which the ray enters the child, the lowest four replaced by the child's
     number, counted from `first` (which only makes the distance less); or CLOSED.  Quadrics among the children are
@@ -214,7 +214,7 @@ def open_root(memory, v, trees, first, room, nearest, counts):
         box, key = root + 4 * c, i32x16(CLOSED)
         if (quadrics >> c) & 1:
             counts[TESTS] += 1
-            quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(root, c) - QUADRIC, nearest)
+            quadric_in_child(None, memory, box, np.int64(1) << v, trees, ~code_of(root, c) - QUADRIC, True)
         else:
             enter, leave = lanes_inside(None, memory, v, child_planes(box))
             distance = as_i32(maximum(enter, ZERO)) & np.int32(~15)

@@ -93,13 +93,13 @@ def _open_roots(memory, vectors, data, first, last, stream, counts):
         vectors &= vectors - 1
         keys, rays = stream + KEYS + KEYS_OF_VECTOR * v, open_rays(memory, v)
         counts[STEPS] += rays
-        open_root(memory, v, one, 0, keys, True, counts)
+        open_root(memory, v, one, 0, keys, counts)
         if first == last:
             sort_columns(keys, WIDTH)
             store(keys + 64 * WIDTH, i32x16(CLOSED))
         else:
             counts[STEPS] += rays
-            open_root(memory, v, other, WIDTH, keys, True, counts)
+            open_root(memory, v, other, WIDTH, keys, counts)
             sort_columns(keys, MOST)
             store(keys + 64 * MOST, i32x16(CLOSED))
         store(stream + PENDING + 64 * v, i32x16(0))

@@ -1,0 +1,145 @@
+"""A figure that can be explored: one HTML file, with a picture in which a reader clicks pixels.
+
+The page (`explorable.html`) draws views from what frames say of each pixel: modes, fates of shadow rays, rays, wrong
+answers, and what blocks a light.  All is in the file, deflated; nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import shlex
+import zlib
+from collections.abc import Iterable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from tracer.culling.fate import Fate
+from tracer.frame import Frame
+from tracer.geometry.camera import pinhole
+from tracer.geometry.rays import ray_batch
+from tracer.geometry.world import World
+from tracer.inspect.why_in_words import primitive_in_words
+from tracer.method import Method
+from tracer.scene.lights import named_light
+from viewer.output import commands
+from viewer.output.comparison import Shown
+from viewer.state.palette import FATES, OCCLUSION, SHADOW, Class, color_map
+from viewer.state.session import Session
+from viewer.state.views import Record
+from viewer.util.files import write_text
+from viewer.util.numbers import several
+
+ENDING = ".html"
+RECORDS = tuple(Record)  # of a frame: all that views show
+MOST_PIXELS, MOST_LIGHTS = 640 * 480, 8
+_BETWEEN = 1e-4  # of the way from a light: nearer to either end lies the lamp itself, or the surface that is asked
+
+
+def check(width: int, height: int) -> None:
+    """Raise ValueError, in one line, for a picture that makes too large a file."""
+    if width * height > MOST_PIXELS:
+        raise ValueError(f"{width} x {height} pixels make too large a file: {MOST_PIXELS:,} at most (--size)")
+
+
+def save(shown: Shown, world: World, path: Path) -> None:
+    """Write the page; raises OSError in one line.  The frames have recorded all of RECORDS."""
+    text = Path(__file__).with_suffix(ENDING).read_text(encoding="utf-8")
+    data = json.dumps(page_data(shown, world), separators=(",", ":")).replace("<", "\\u003c")
+    write_text(path, text.replace("/*DATA*/null", data, 1))
+
+
+def page_data(shown: Shown, world: World) -> dict[str, Any]:
+    """Return what the page is given, as JSON has it."""
+    scene, state, frame = shown.scene, shown.state, shown.reference
+    lights = min(frame.lights, MOST_LIGHTS)
+    positions = scene.light_positions(frame.time)
+    in_the_way = [blockers(frame, world, positions, light) for light in range(lights)]
+    number = Session(scene).frame_at(state.time)
+    before = f", with what {several(shown.warmed, 'earlier frame')} taught" if shown.warmed else ""
+    words = ["shadowcull", "figure", commands.scene_word(scene.path), "-o", "figure.html"]
+    left_out = frame.lights - lights
+    return {
+        "title": f"{scene.path.name}, frame {number}{before}",
+        "caption": shown.comparison.words or state.draw.caption,
+        "command": shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)]),
+        "note": f"{several(left_out, 'further light')} left out" if left_out else "",
+        "width": frame.width,
+        "height": frame.height,
+        "lights": [named_light(scene.lights, light) for light in range(lights)],
+        "primitives": {
+            int(k): primitive_in_words(scene, int(k)) for k in np.unique([frame.primitive, *in_the_way]) if k >= 0
+        },
+        "primitive": _deflated(frame.primitive, np.int32),
+        "blockers": [_deflated(blocker, np.int32) for blocker in in_the_way],
+        "classes": {"occlusion": _classes(OCCLUSION), "shadow": _classes(SHADOW), "fate": _classes(FATES)},
+        "away": int(Fate.FACES_AWAY),
+        "colors": _deflated(np.round(255 * color_map()), np.uint8),
+        "methods": [_method(name, shown, lights) for name in dict.fromkeys(["none", *shown.frames])],
+    }
+
+
+def _options(shown: Shown) -> list[str]:
+    """The options of the state, without what is of one method or one view."""
+    words = commands.options(shown.state.with_draw(caption=""), shown.scene)
+    at = words.index("--method")
+    return [*words[:at], *words[at + 2 :]]
+
+
+def _method(name: str, shown: Shown, lights: int) -> dict[str, Any]:
+    """What the page is told of a method."""
+    frame = shown.frames.get(name, shown.reference)
+    of_modes = frame.settings.keeps_modes
+    return {
+        "name": name,
+        "title": Method.parse(name).title,
+        "counts": Shown(shown.scene, shown.state, shown.comparison, {name: frame}, shown.reference).counts(name),
+        "picture": _png(frame.pixels),
+        "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
+        "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in range(lights)] if of_modes else [],
+        "fate": [_deflated(frame.fate(k), np.uint8) for k in range(lights)] if frame.fates is not None else [],
+        "traced": _deflated(frame.cost, np.int32),
+        "due": _deflated(frame.due_rays, np.int32),
+        "saved": _deflated(frame.saved, np.int32),
+        "wrong": _deflated(frame.wrong, np.int32),
+    }
+
+
+def blockers(frame: Frame, world: World, lights: NDArray[np.float64], light: int) -> NDArray[np.int32]:
+    """(h, w) the first primitive from the middle of one of lights (l, 3) towards what each pixel shows; -1 where the
+    light gets there, or is not due."""
+    assert frame.asked is not None and frame.reached is not None
+    view = pinhole(frame.camera, frame.width, frame.height)
+    y, x = np.nonzero((frame.primitive >= 0) & (frame.asked[..., light] > 0) & (frame.reached[..., light] == 0))
+    ways = view.corner + x[:, None] * view.column + y[:, None] * view.row
+    seen = view.origin + frame.depth[y, x][:, None] * ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    start = lights[light].astype(np.float32)
+    rays = ray_batch(np.repeat(start[None], len(seen), 0), seen - start, _BETWEEN, 1.0 - _BETWEEN)
+    found = np.full(frame.primitive.shape, -1, np.int32)
+    found[y, x] = world.closest_hits(rays).primitive
+    return found
+
+
+def _classes(classes: dict[Any, Class]) -> list[dict[str, Any]]:
+    return [
+        {"name": c.name, "color": [round(255 * x) for x in c.color], "meaning": c.meaning} for c in classes.values()
+    ]
+
+
+def _deflated(values: NDArray[Any] | Iterable[Any] | None, kind: type) -> str:
+    """Numbers, little-endian, as the page inflates them; nothing for None."""
+    if values is None:
+        return ""
+    data = np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()
+    return base64.b64encode(zlib.compress(data, 9)).decode()
+
+
+def _png(pixels: NDArray[np.uint8]) -> str:
+    file = BytesIO()
+    Image.fromarray(pixels).save(file, "PNG", optimize=True)
+    return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
