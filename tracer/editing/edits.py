@@ -220,11 +220,11 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
     freed: list[tuple[SceneObject, Held]] = []
     for thing in moves:
         mine = there & (part_of == thing.part)
-        one = replace(_subset(static, mine), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
+        one = replace(subset(static, mine), name=thing.name, chain=(np.eye(4),), parts=(), part_of=None)
         freed.append((one, _of(static_held, mine)))
     shown = there & ~np.isin(part_of, [thing.part for thing in moves])
     if not shown.all():
-        static, static_held = _subset(static, shown), _of(static_held, shown)
+        static, static_held = subset(static, shown), _of(static_held, shown)
 
     dynamic: list[tuple[SceneObject, Held]] = []
     names = {thing.index: thing.name for thing in things(scene)}
@@ -233,7 +233,7 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
         held, name = held_by(scene, index), names.get(index, "")
         kept = ~np.isin(np.concatenate(held), list(edits.hidden_primitives))
         if not kept.all():
-            one, held = _subset(one, kept), _of(held, kept)
+            one, held = subset(one, kept), _of(held, kept)
         if name in times:
             if name not in edits.hidden and scene.animation.visible(one.chain, times[name]):
                 static, static_held = _joined(static, static_held, _at_rest(scene, one, times[name]), held, name)
@@ -247,7 +247,7 @@ def _of(held: Held, kept: NDArray[np.bool_]) -> Held:
     return held[0][kept[: len(held[0])]], held[1][kept[len(held[0]) :]]
 
 
-def _subset(one: SceneObject, kept: NDArray[np.bool_]) -> SceneObject:
+def subset(one: SceneObject, kept: NDArray[np.bool_]) -> SceneObject:
     """An object with some of its primitives: kept (triangles, then quadrics) bool."""
     t, q = kept[: len(one.triangles)], kept[len(one.triangles) :]
     triangles = Triangles(*(getattr(one.triangles, name)[t] for name in _TRIANGLES))

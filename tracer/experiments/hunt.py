@@ -36,7 +36,8 @@ MOST_LOOKED_INTO = 12
 """Wrong pixels of one frame whose rays are looked into, at most."""
 _SUFFIXES = (1, 2, 4, 8, 16)  # last frames of a history that are tried alone
 _DRAWS = 12  # places that are tried for one random view, until nothing is in the way there
-_NAMES = ("depth", "symmetric", "zoom_factor", "lamp_radius", "lamp_samples", "accelerator")
+SETTINGS = ("depth", "symmetric", "zoom_factor", "lamp_radius", "lamp_samples", "accelerator")
+"""What findings tell of how they were traced."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ def run(
         settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
     world = world or World(scene, search.times[0], settings.accelerator)
     settings = replace(settings, accelerator=world.accelerator)
-    names = {name: getattr(settings, name) for name in _NAMES}
+    names = {name: getattr(settings, name) for name in SETTINGS}
     results = Results(str(scene.path), settings.method, (settings.width, settings.height), names)
     hunter = _Hunter(scene, search, settings, world, cancel, results)
     try:
@@ -143,7 +144,7 @@ class Hunt(Run[Results]):
         return replace(results, finds=list(results.finds))
 
 
-class _History:
+class History:
     """Frames that were traced one after another, and which of them taught what."""
 
     def __init__(self, scene: Scene) -> None:
@@ -161,14 +162,39 @@ class _History:
         self._lights = lights
         self.frames.append(traced)
 
-    def with_teacher(self, find: Counterexample) -> Counterexample:
-        """Add the frame that taught the mode of the primitive."""
-        taught = self.origins.of(find.primitive)
+    def with_teacher(self, find: Counterexample, unit: int) -> Counterexample:
+        """Add the frame that taught the mode of the unit, the primitive or a cell of it."""
+        taught = self.origins.of(unit)
         if taught is None or find.light >= len(taught.lights):
             return find
         origin = taught.lights[find.light]
         number = origin.lit if find.lit else origin.blocked
         return find if number == NEVER else replace(find, taught=number, taught_time=self.frames[number].time)
+
+
+def find_at(
+    renderer: Renderer, frame: Frame, x: int, y: int, history: History, cancel: Callable[[], bool]
+) -> Counterexample | None:
+    """Return what is wrong at a pixel of a verified frame that comes after a history; None where no answer is."""
+    assert frame.wrong is not None and frame.reference is not None
+    find = counterexample_in(ray_tree(renderer, frame, x, y, cancel), renderer.scene)
+    if find is None:
+        return None
+    if frame.cells is None or frame.certificates is not None:  # else cells of it have the modes
+        find = history.with_teacher(find, find.primitive)
+    color, right = frame.color[y, x], frame.reference[y, x]
+    differing = (frame.color != frame.reference).any(axis=-1)
+    return replace(
+        find,
+        difference=float(np.abs(np.clip(color, 0.0, 1.0) - np.clip(right, 0.0, 1.0)).max()),
+        color=vector(color),
+        reference=vector(right),
+        pixels=int(np.count_nonzero((frame.wrong > 0) | differing)),
+        answers=int(frame.wrong.sum()),
+        differing=int(np.count_nonzero(differing)),
+        before=tuple(history.frames),
+        learnt_from=len(history.frames),
+    )
 
 
 class _Hunter:
@@ -186,7 +212,7 @@ class _Hunter:
         self._scene, self._search, self._settings, self._world = scene, search, settings, world
         self._cancel, self._results = cancel, results
         self._renderer = Renderer(scene, settings, world=world)
-        self._path = _History(scene)
+        self._path = History(scene)
         self._shortened: set[Counterexample] = set()
 
     def frame_of_path(self, time: float) -> Frame:
@@ -219,41 +245,24 @@ class _Hunter:
 
     # --- judging ----------------------------------------------------------------------------------
 
-    def _judge(self, renderer: Renderer, frame: Frame, place: str, history: _History, own_camera: bool) -> None:
+    def _judge(self, renderer: Renderer, frame: Frame, place: str, history: History, own_camera: bool) -> None:
         """Count what is wrong in a picture that comes after a history, and keep it where it is among the worst."""
         results = self._results
         assert frame.wrong is not None and frame.reference is not None
-        in_cells = frame.cells is not None and frame.certificates is None
-        differing = (frame.color != frame.reference).any(axis=-1)
-        wrong = (frame.wrong > 0) | differing
+        wrong = (frame.wrong > 0) | (frame.color != frame.reference).any(axis=-1)
         pixels = int(np.count_nonzero(wrong))
         results.frames += 1
         results.pixels += wrong.size
         results.wrong_pixels += pixels
         results.wrong_frames += pixels > 0
-        for x, y, difference in self._candidates(frame, wrong):
-            find = counterexample_in(ray_tree(renderer, frame, x, y, self._cancel), self._scene)
+        for x, y in self._candidates(frame, wrong):
+            find = find_at(renderer, frame, x, y, history, self._cancel)
             if find is not None:
-                color, right = frame.color[y, x], frame.reference[y, x]
-                self._keep(
-                    replace(
-                        find if in_cells else history.with_teacher(find),
-                        place=place,
-                        own_camera=own_camera,
-                        difference=difference,
-                        color=vector(color),
-                        reference=vector(right),
-                        pixels=pixels,
-                        answers=int(frame.wrong.sum()),
-                        differing=int(np.count_nonzero(differing)),
-                        before=tuple(history.frames),
-                        learnt_from=len(history.frames),
-                    )
-                )
+                self._keep(replace(find, place=place, own_camera=own_camera))
 
-    def _candidates(self, frame: Frame, wrong: np.ndarray) -> list[tuple[int, int, float]]:
-        """The worst wrong pixel of each primitive that a picture shows, the worst first, as x, y and difference, as far
-        as they may be among the worst of all."""
+    def _candidates(self, frame: Frame, wrong: np.ndarray) -> list[tuple[int, int]]:
+        """The worst wrong pixel of each primitive that a picture shows, the worst first, as x and y, as far as they may
+        be among the worst of all."""
         rows, columns = np.nonzero(wrong)
         if not len(rows):
             return []
@@ -265,7 +274,7 @@ class _Hunter:
         finds = self._results.finds
         least = finds[-1].difference if len(finds) >= self._search.keep else VISIBLE
         worst = order[np.sort(first)][:MOST_LOOKED_INTO]
-        return [(int(columns[i]), int(rows[i]), float(differences[i])) for i in worst if differences[i] > least]
+        return [(int(columns[i]), int(rows[i])) for i in worst if differences[i] > least]
 
     def _keep(self, find: Counterexample) -> None:
         """Put a counterexample among the others, the worst first, the worst only of a primitive and a light."""
@@ -316,8 +325,8 @@ class _Hunter:
         frame = renderer.render(find.time, find.seen_camera, self._cancel)
         return vector(frame.color[find.y, find.x]) == find.color
 
-    def _trace_before(self, renderer: Renderer, before: tuple[WarmupFrame, ...]) -> _History:
-        renderer.settings, history = replace(self._settings, verify=False), _History(self._scene)
+    def _trace_before(self, renderer: Renderer, before: tuple[WarmupFrame, ...]) -> History:
+        renderer.settings, history = replace(self._settings, verify=False), History(self._scene)
         for traced in before:
             history.add(renderer.render(traced.time, traced.camera, self._cancel), traced)
         return history

@@ -66,6 +66,8 @@ class Run(ABC, Generic[Results]):
     """
 
     name = "run"
+    unit = "frame"
+    """What it counts in."""
     verifies = True
     """Whether its frames know which answers are wrong."""
     each_is_seen = False

@@ -72,7 +72,7 @@ class Work:
         if run.results is None:
             raise Cancelled("cancelled")
         if not run.whole:
-            self.note("cancelled after {} of {} frames; these are kept".format(*run.done_of))
+            self.note("cancelled after {} of {} {}s; these are kept".format(*run.done_of, run.unit))
         return run.results
 
     def note(self, line: str) -> None:

@@ -11,20 +11,18 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.inspect.mode_origins import ModeOrigins
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
 from tracer.inspect.why import why
 from tracer.inspect.why_in_words import Words, plain
-from tracer.method import DEFAULT_METHOD
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
 from tracer.scene.model import Scene
 from tracer.util.text import printable
-from viewer.cli import arguments, options
+from viewer.cli import options
 from viewer.cli.arguments import Parser, count
 from viewer.cli.console import working
 from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
@@ -48,21 +46,10 @@ def parser() -> Parser:
     description = "Say what became of each ray of a pixel: which shadow rays were due, culled or traced, and why."
     parser = Parser("explain", description, EPILOG + options.method_summaries())
     add = parser.add_argument
-    options.add_scene(parser)
-    help_ = "column and row, counted from the upper left"
-    add("--pixel", type=arguments.pixel, required=True, metavar="X,Y", help=help_)
-    options.add_moment(parser)
-    options.add_size(parser)
-    help_ = f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD})"
-    add("--method", type=arguments.method, metavar="METHOD", help=help_)
+    options.add_pixel(parser)
     add("--only", choices=list(RaySubset), default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
     add("--json", action="store_true", help="all rays as JSON on standard output")
-    add("--camera", type=arguments.camera, metavar="JSON", help=f"another camera: {options.CAMERA}")
-    options.add_edits(parser)
-    options.add_history(parser)
-    help_ = "then trace the frame itself N times (default: 1 without --warmup and --before, else 0)"
-    add("--repeat", type=count(0, 1000), metavar="N", help=help_)
     options.add_tracing(parser)
     return parser
 
@@ -71,20 +58,14 @@ def run(given: Namespace) -> int:
     """Trace a frame, and print the reasons and the tree of a pixel's rays; raises SceneError and ValueError in one
     line, or Cancelled."""
     check_scene_file(given.path)
-    settings = options.tracing_settings(given)
-    x, y = given.pixel
-    if not (x < settings.width and y < settings.height):
-        raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
+    settings, (x, y) = options.pixel_settings(given), given.pixel
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         light = None if given.light is None else options.light_index(given, "--light ", given.light, scene)
         time = options.moment(scene, given)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        # The frame itself comes once before where no others do, as in the window at rest.
-        repeats = given.repeat if given.repeat is not None else 0 if given.warmup or given.before else 1
-        times = [*options.warmup_times(scene, time, given.warmup, work), *[time] * repeats]
-        before = [*given.before, *(WarmupFrame(then, given.camera) for then in times)]
+        before = options.frames_before(scene, given, work)
         origins, places = ModeOrigins(len(scene.lights)), None
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)

@@ -6,30 +6,25 @@ Ctrl-C ends it after the last whole picture: what was found is shown, and writte
 from __future__ import annotations
 
 from argparse import Namespace
-from dataclasses import replace
 from pathlib import Path
 
-from tracer.experiments import counterexample, hunt
+from tracer.experiments import hunt
 from tracer.experiments.camera_path import along_path
-from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import Hunt, Search
 from tracer.experiments.titles import title
-from tracer.frame import Settings
 from tracer.geometry.world import World
 from tracer.scene.load import check_scene_file
-from tracer.scene.mesh_options import MeshOptions
 from tracer.scene.model import Cancelled, Scene
-from tracer.util.text import printable, shell_line
+from tracer.util.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import INTERRUPTED, Parser
 from viewer.cli.console import Work, listed, print_table, working
-from viewer.output import commands, exports
-from viewer.output.comparison import Comparison, Crop
+from viewer.output import exports
+from viewer.output.findings import comparison_of, save_json
 from viewer.output.reports import findings
 from viewer.services import stills
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import HuntPlan
-from viewer.state.view_state import ViewState, Warmup
 
 ALL = "hunt.json"
 """What holds all findings; each has a figure and a JSON of its own beside it."""
@@ -98,8 +93,8 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
     written, meshes = [], options.mesh_options(given).of_file(Path(scene.path))
     for rank, find in enumerate(found.finds, 1):
         stem = given.output / f"find-{rank}"
-        state, figure = _comparison_of(find, found, scene, search.settings, meshes)
-        _save_json(find, found, scene, state, stem.with_suffix(".json"))
+        state, figure = comparison_of(find, found, scene, search.settings, meshes)
+        save_json(find, found, scene, state, stem.with_suffix(".json"))
         if not work.stopped:
             work.count(f"figure {rank} of {len(found.finds)}", rank - 1, len(found.finds))
             try:
@@ -122,34 +117,3 @@ def _check_folder(folder: Path) -> None:
         raise OSError(f"{folder}: cannot write counterexamples there: {error.strerror or error}") from None
     if taken is not None:
         raise OSError(f"{folder}: has counterexamples already ({taken}); give another folder")
-
-
-def _comparison_of(
-    find: Counterexample, found: hunt.Results, scene: Scene, settings: Settings, meshes: MeshOptions,
-) -> tuple[ViewState, Comparison]:  # fmt: skip
-    """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
-    enlarged."""
-    state = ViewState(
-        scene=str(Path(scene.path).absolute()),
-        time=find.time,
-        camera=find.seen_camera,
-        settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
-        warmup=Warmup(find.before),
-        meshes=meshes,
-    )
-    methods, words = (NO_CULLING, found.method), " ".join(counterexample.in_words(find, scene))
-    shown = Comparison(methods, (Crop.around((find.x, find.y), found.size),), ((find.x, find.y),), words)
-    return state, shown.checked(state.size)
-
-
-def _save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: ViewState, path: Path) -> None:
-    """Write all about a counterexample, whose picture has this state, with the command that explains it.
-
-    Raises OSError in one line."""
-    words = ["shadowcull", "explain", commands.scene_word(Path(state.scene))]
-    words += commands.options(replace(state, warmup=Warmup()))
-    words += ["--pixel", f"{find.x},{find.y}", "--before", path.name, "--only", "wrong"]
-    told = counterexample.to_json(find, scene) | {"size": found.size, "method": found.method}
-    told |= {"scene": found.scene, "settings": found.settings}
-    told |= {"words": counterexample.in_words(find, scene), "explain": shell_line(words)}
-    exports.write_json(path, told, indent=1)

@@ -36,8 +36,11 @@ COMMANDS = {
     "zoom": ("SCENE", "move towards a primitive, and see whether its shadows stay right"),
     "explain": ("SCENE", "say what became of each ray of one pixel"),
     "hunt": ("SCENE", "search a path for the worst wrong pixels of a method"),
+    "shrink": ("SCENE", "reduce a wrong pixel to the few triangles, lights and frames that it takes"),
     "figure": ("SCENE", "draw a frame by several methods side by side"),
     "check": ("FILE", "render saved pictures and figures again, and say whether they are still true"),
+    "prove": ("SCENE", "write what is certified of a frame as proofs that anybody can check"),
+    "check-proofs": ("FILE", "check such proofs in exact arithmetic"),
     "info": ("SCENE", "say what a scene holds"),
 }
 _EXAMPLES = """
@@ -79,7 +82,7 @@ def _flush_nothing_more() -> None:
 
 
 def _run(name: str, arguments: list[str]) -> int:
-    command = import_module(f"viewer.cli.{name}")
+    command = import_module(f"viewer.cli.{name.replace('-', '_')}")
     parser: Parser = command.parser()
     options = parser.parse_args(arguments)
     if "scene" in options:

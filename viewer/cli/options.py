@@ -11,9 +11,9 @@ from typing import Any
 
 from tracer.compiling.compilation import compiled_before, is_first, make_all_ready
 from tracer.editing.edits import NO_EDITS, Edits, edited
-from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES
+from tracer.experiments.warmup_frames import MOST_WARMUP_FRAMES, WarmupFrame
 from tracer.geometry.accelerators import BVH8
-from tracer.method import additions, bases
+from tracer.method import DEFAULT_METHOD, additions, bases
 from tracer.runtime.kernel_cache import outlives_process
 from tracer.scene.load import load_visible_scene
 from tracer.scene.mesh_options import MeshOptions
@@ -21,7 +21,7 @@ from tracer.scene.model import Scene
 from tracer.scene.things import things
 from tracer.settings import Settings
 from tracer.util.setting import settings_of
-from viewer.cli.arguments import UPS, Parser, before, count, light_at, number, size
+from viewer.cli.arguments import UPS, Parser, before, camera, count, light_at, method, number, pixel, size
 from viewer.cli.console import Work
 from viewer.services import stills
 from viewer.state.draw_options import Slice
@@ -200,6 +200,43 @@ def warmup_times(scene: Scene, time: float, warmup: int, work: Work) -> list[flo
         come = {0: "no frame comes", 1: "only one frame comes"}.get(len(times), f"only {len(times)} frames come")
         work.note(f"--warmup {warmup}: {come} before this one")
     return times
+
+
+# --- a pixel --------------------------------------------------------------------------------------
+
+
+def add_pixel(parser: Parser) -> None:
+    """Add what names a pixel of a picture of a scene, and the frames before it."""
+    add = parser.add_argument
+    add_scene(parser)
+    help_ = "column and row, counted from the upper left"
+    add("--pixel", type=pixel, required=True, metavar="X,Y", help=help_)
+    add_moment(parser)
+    add_size(parser)
+    help_ = f"how shadow rays are culled: {METHODS} (default: {DEFAULT_METHOD})"
+    add("--method", type=method, metavar="METHOD", help=help_)
+    add("--camera", type=camera, metavar="JSON", help=f"another camera: {CAMERA}")
+    add_edits(parser)
+    add_history(parser)
+    help_ = "then trace the frame itself N times (default: 1 without --warmup and --before, else 0)"
+    add("--repeat", type=count(0, 1000), metavar="N", help=help_)
+
+
+def pixel_settings(options: Namespace) -> Settings:
+    """Return what the options say of tracing; raises ValueError, in one line, also for a pixel outside the picture."""
+    settings, (x, y) = tracing_settings(options), options.pixel
+    if not (x < settings.width and y < settings.height):
+        raise ValueError(f"--pixel {x},{y}: the picture is {settings.width} x {settings.height}")
+    return settings
+
+
+def frames_before(scene: Scene, options: Namespace, work: Work) -> list[WarmupFrame]:
+    """Return the frames that are traced before the picture: the frame itself once where no others are, as in the window
+    at rest."""
+    time = moment(scene, options)
+    repeats = options.repeat if options.repeat is not None else 0 if options.warmup or options.before else 1
+    times = [*warmup_times(scene, time, options.warmup, work), *[time] * repeats]
+    return [*options.before, *(WarmupFrame(then, options.camera) for then in times)]
 
 
 # --- tracing ---------------------------------------------------------------------------------------

@@ -33,6 +33,7 @@ from viewer.services.runs import Runs
 from viewer.services.scene_loader import SceneLoader
 from viewer.services.scene_table import SceneTable
 from viewer.services.settings_controller import SettingsController
+from viewer.services.shrinking import Shrinking
 from viewer.services.undo import Undo
 from viewer.state import codec
 from viewer.state.methods import remark_on
@@ -81,6 +82,7 @@ class Controller:
             session, preferences, scheduler, self.history, loader, runs, captures, notices
         )
         self.films = Films(session, preferences, runs, pictures, bookmarks)
+        self.shrinking = Shrinking(session, preferences, runs, self.history, selection, lambda: self.own_traced)
         self.reloaded = False
         self.info: dict[str, Any] = {}
         self.drawn_seconds = 0.0

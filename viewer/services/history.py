@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame
 from tracer.inspect.mode_origins import ModeOrigins, Origins
 from tracer.state import ModeKey, mode_key
@@ -142,7 +143,7 @@ class FrameHistory:
         """Forget who set which mode; `blank` says that no modes are left from frames before."""
         self._origins: dict[ModeKey, ModeOrigins] = {}
         self._lights: dict[ModeKey, NDArray[np.float64]] = {}
-        self._blank = blank
+        self._blank, self._learnt_from = blank, self.frames
         self._repeats = {} if blank else dict.fromkeys(self._repeats, (None, 0))
 
     @property
@@ -224,6 +225,13 @@ class FrameHistory:
         if wait:
             self._known = now[:2], answer.result()
         return self._known[1] if self._known[0] == now[:2] else None
+
+    def before(self, frame: Frame) -> tuple[WarmupFrame, ...]:
+        """Return the frames of the size of the newest frame that were traced before it since modes were forgotten, as
+        far as they are kept."""
+        first, size = max(self._learnt_from, next(iter(self.records), 0)), (frame.width, frame.height)
+        states = [self.records[number].state for number in range(first, self.frames - 1)]
+        return tuple(WarmupFrame(state.time, state.camera) for state in states if state.size == size)
 
     def repeats_of(self, frame: Frame) -> int | None:
         """Return how often this very frame was traced since modes were forgotten, before it; None where others were as

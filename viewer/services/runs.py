@@ -190,11 +190,11 @@ class Runs:
             self._notices.report(failure(run.error, f"the {run.name} failed"))
         elif run.whole:
             self._notices.say(
-                f"{run.name} done: {several(frames, 'frame')} in {duration(run.seconds)}{where}", file=run.output
+                f"{run.name} done: {several(frames, run.unit)} in {duration(run.seconds)}{where}", file=run.output
             )
         else:
             kept = "" if run.results is None else f"; what was done is kept{where}"
-            self._notices.say(f"{run.name} stopped after {done} of {frames} frames{kept}")
+            self._notices.say(f"{run.name} stopped after {done} of {frames} {run.unit}s{kept}")
 
     # --- experiments, zoom tests and hunts -----------------------------------------------------------
 

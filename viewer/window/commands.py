@@ -283,6 +283,9 @@ def _run(ui: Ui) -> list[Command]:
     idle = Condition(
         lambda: c.session.scene is not None and runs.current is None, "no scene is open, or a run is in progress"
     )
+    wrong = Condition(
+        lambda: runs.current is None and c.shrinking.offers, "no wrong pixel is clicked, or a run is in progress"
+    )
     busy = Condition(
         lambda: c.loader.load_job is not None or runs.current is not None or c.selection.picked is not None,
         "nothing is running, and nothing is selected",
@@ -294,6 +297,8 @@ def _run(ui: Ui) -> list[Command]:
                 tip="towards the clicked primitive: is a shadow missing that shows only from near?"),
         Command("Start hunt", "Run", partial(start, "Hunt", c.runs.start_hunt), enabled=idle, also="wrong",
                 tip="search the path for the worst wrong pixels of a method"),
+        Command("Shrink the wrong pixel", "Run", c.shrinking.start, enabled=wrong, also="minimal",
+                tip="the few triangles, lights and frames that it takes, with a figure and a test, into a folder"),
         Command("Film...", "Run", partial(start, "Film"), enabled=idle,
                 tip="a path, or a flight through bookmarks, as pictures and video"),
         Command("Table 1", "Run", partial(start, "Experiment", ui.figures.table_1), enabled=idle, separated=True,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from tests.marbles import LAST, STEP, write_marbles
 from tests.viewer.driver import Driver
+from tracer.scene.load import load_scene
 from viewer.state.picking import wrong_at
 from viewer.window.panels.inspector import wrong_beyond
 from viewer.window.panels.plots import PlotsState
@@ -84,5 +87,22 @@ def _to_a_find(d: Driver) -> None:
     d.click(f"//Hunt/**/{icons.ICON_FA_CODE_BRANCH}  Rays")
     d.wait(lambda: c.inspector.tree is not None, "its rays", 20.0)
     assert any(ray.shadows is not None and ray.shadows.wrong.any() for ray in c.inspector.tree.rays)
-    d.show_panel("Hunt").press("RightArrow").settle()
+    _shrunk(d, lambda: d.show_panel("Hunt").click(f"//Hunt/**/{icons.ICON_FA_COMPRESS}  Shrink"))
+    c.navigator.go_to_find(0)
+    d.settle()
+    d.wait(lambda: c.shrinking.offers, "the wrong pixel selected again", 20.0)
+    _shrunk(d, lambda: d.show_panel("Inspector").click("//Inspector/**/Shrink"))
+    c.navigator.go_to_find(0)
+    d.show_panel("Hunt").settle().press("RightArrow").settle()
     d.wait(lambda: c.frame.settings.samples == 4 and c.frame.width > 96, "samples and size after a movement", 30.0)
+
+
+def _shrunk(d: Driver, start: Callable[[], object]) -> None:
+    """What starts shrinking leads to a folder with a scene of a few primitives."""
+    folder = d.c.preferences.picture_folder
+    before = set(folder.glob("*-shrunk-*"))
+    start()
+    d.wait(lambda: d.c.runs.current is None and set(folder.glob("*-shrunk-*")) > before, "the folder", 60.0)
+    (made,) = set(folder.glob("*-shrunk-*")) - before
+    assert load_scene(made / "scene.aff").primitive_count < d.c.session.scene.primitive_count
+    d.settle()

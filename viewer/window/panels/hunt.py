@@ -68,6 +68,11 @@ def _details(ui: Ui, number: int, find: Counterexample, scene: Scene) -> None:
     imgui.begin_disabled(ui.controller.runs.current is not None)
     if imgui.button(f"{icons.ICON_FA_PAPER_PLANE}  Fly there"):
         _fly(ui, number)
+    shrink = f"{icons.ICON_FA_COMPRESS}  Shrink"
+    same_line_for(shrink)
+    if imgui.button(shrink):
+        ui.controller.shrinking.start_find(number)
+    tooltip("The few triangles, lights and frames that it takes, with a figure and a test, into a folder.")
     imgui.end_disabled()
     rays = f"{icons.ICON_FA_CODE_BRANCH}  Rays"
     same_line_for(rays)

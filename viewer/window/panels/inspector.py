@@ -75,6 +75,8 @@ def _details(ui: Ui, pick: Pick, at: Pixel | None) -> None:
         if wrong:
             of = f"in its {frame.settings.samples} samples, " if frame.settings.samples > 1 else ""
             paragraph(f"{several(wrong, 'wrong shadow answer')} at this pixel, {of}at all bounces.", ERROR)
+            if ui.controller.shrinking.offers and imgui.small_button("Shrink"):
+                ui.controller.shrinking.start()
         _why(ui, pick, unit, frame, scene, wrong or 0)  # first, as it is what a click asks
         if frame.settings.keeps_modes:
             heading("Modes of its cell" if has_modes_of_cells(frame) else "Modes")

@@ -1,0 +1,346 @@
+"""Shrinking a wrong pixel: delta debugging, until no primitive, light or frame before it can be taken away.
+
+Chunks of what is there are left out, half of it first and single ones last.  What was left out stays out if the pixel
+still is wrong, and too bright or too dark as before.  That goes on until leaving out any single thing makes it right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.verdicts import Verdict
+from tracer.editing.edits import NEVER as HIDDEN
+from tracer.editing.edits import subset
+from tracer.experiments.counterexample import Counterexample
+from tracer.experiments.hunt import VISIBLE, History, find_at
+from tracer.experiments.runner import Run, never
+from tracer.experiments.warmup_frames import WarmupFrame
+from tracer.frame import Frame, Settings
+from tracer.geometry.world import World
+from tracer.inspect.projection import at_depth
+from tracer.inspect.reasons import MEANING
+from tracer.inspect.why_in_words import kind_of
+from tracer.method import Method, title_of
+from tracer.renderer import Renderer
+from tracer.scene.aff_writer import as_word
+from tracer.scene.bounds import ball_of, bounds
+from tracer.scene.lights import named_light
+from tracer.scene.model import Camera, Scene, Triangles
+from tracer.scene.things import held_by, thing_numbers
+
+Cancel = Callable[[], bool]
+_FAR = 1000.0  # times the radius of what is left: where the area is that was left out
+
+
+@dataclass(frozen=True)
+class WrongPixel:
+    """A pixel (x, y) of the picture at `time` that is traced by `settings` after the frames `before`; a camera is the
+    scene's own where that is None."""
+
+    x: int
+    y: int
+    time: float
+    camera: Camera | None
+    before: tuple[WarmupFrame, ...]
+    settings: Settings
+
+    def checked(self) -> WrongPixel:
+        """Return it as it is traced here; raises ValueError, in one line, for a pixel outside of the picture."""
+        settings = replace(self.settings, samples=1, verify=False, modes=False).validated()
+        if Method.parse(settings.method).has_certificates:
+            settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
+        if not (0 <= self.x < settings.width and 0 <= self.y < settings.height):
+            raise ValueError(f"--pixel {self.x},{self.y}: the picture is {settings.width} x {settings.height}")
+        return replace(self, settings=settings)
+
+
+class Counts(NamedTuple):
+    """How much there is."""
+
+    primitives: int
+    lights: int
+    frames: int
+
+    def __str__(self) -> str:
+        return ", ".join(f"{n:,} {name if n != 1 else name[:-1]}" for name, n in zip(self._fields, self, strict=True))
+
+
+@dataclass(frozen=True)
+class Shrunk:
+    """A wrong pixel and the scene that is left for it, from how much there was at first, and after how many tries."""
+
+    scene: Scene
+    wrong: WrongPixel
+    first: Counts
+    tries: int
+
+    @property
+    def counts(self) -> Counts:
+        """How much is left."""
+        return Counts(self.scene.primitive_count, len(self.scene.lights), len(self.wrong.before))
+
+
+# --- whether it is wrong ------------------------------------------------------------------------------
+
+
+def _traced(scene: Scene, wrong: WrongPixel, cancel: Cancel) -> tuple[Renderer, Frame, History, list[Frame]]:
+    """The picture, with every culled ray verified, what has traced it, and the frames before it."""
+    renderer, history, before = Renderer(scene, wrong.settings), History(scene), []
+    for one in wrong.before:
+        before.append(renderer.render(one.time, one.camera, cancel))
+        history.add(before[-1], one)
+    renderer.settings = replace(wrong.settings, verify=True)
+    return renderer, renderer.render(wrong.time, wrong.camera, cancel), history, before
+
+
+def error(scene: Scene, wrong: WrongPixel, cancel: Cancel = never) -> float:
+    """Return how much too bright the pixel is, below 0 if it is too dark: of the channel that is off the most.
+
+    0 where none of its shadow answers is wrong, or nobody would see it."""
+    if not scene.primitive_count or not scene.lights:
+        return 0.0
+    _, frame, _, _ = _traced(scene, wrong, cancel)
+    assert frame.wrong is not None and frame.reference is not None
+    off = (frame.color - frame.reference)[wrong.y, wrong.x]
+    most = float(off[np.abs(off).argmax()])
+    return most if frame.wrong[wrong.y, wrong.x] and abs(most) > VISIBLE else 0.0
+
+
+def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | None:
+    """Return what is wrong at the pixel, and a sentence that names the rule of the paper that failed; None where no
+    answer is wrong."""
+    renderer, frame, history, before = _traced(scene, wrong, never)
+    find = find_at(renderer, frame, wrong.x, wrong.y, history, never)
+    if find is None:
+        return None
+    unit = find.primitive
+    if find.bounces == 0:
+        unit = int(frame.unit[wrong.y, wrong.x])  # which may be a cell of it
+        find = history.with_teacher(find, unit)
+    return find, _failed_rule(scene, find, unit, renderer, frame, before)
+
+
+def _failed_rule(
+    scene: Scene, find: Counterexample, unit: int, renderer: Renderer, frame: Frame, before: Sequence[Frame]
+) -> str:
+    verdict = next(one for one in Verdict if one.value == find.verdict)
+    method = title_of(frame.settings.method)
+    if verdict not in (Verdict.FULL_SHADOW, Verdict.NON_SHADOW) or find.taught < 0:
+        return f"No rule of the paper failed, but what {method} knew: {MEANING[verdict]}"
+    what = f"{kind_of(scene, find.primitive)} {find.primitive}"
+    what = f"the cell of {what}" if frame.cells is not None else what
+    light, mode = named_light(scene.lights, find.light), find.verdict
+    then = before[find.taught]
+    teacher = f"frame {find.taught + 1} of the {len(before)} before" if len(before) > 1 else "the frame before"
+    met = "none of its shadow rays was blocked" if find.lit else "all of its shadow rays were blocked"
+    learnt = f"In {teacher}, {met} on the way to {light}, which set {mode} (§2.5)"
+    seen, alone = int(then.pixel_count[unit]), 0
+    if frame.cells is None and find.bounces == 0:
+        rays = replace(then.settings, method="none", depth=0)
+        alone_in = with_primitives(scene, [find.primitive])
+        alone = int((Renderer(alone_in, rays).render(then.time, then.camera).primitive == 0).sum())
+    if alone > seen > 0:
+        failed = f"Occlusion testing (§2.3) failed: {what} showed {seen:,} of {alone:,} pixels, but passed for whole"
+        return f"{failed}. {learnt}; shadow testing (§2.4) takes that to hold for all of it."
+    now, highest, factor = int(frame.pixel_count[unit]), int(renderer.highest_before[unit]), frame.settings.zoom_factor
+    if now > highest > 0:
+        failed = f"Occlusion-mode setting (§2.6) failed: {what} covers {now:,} pixels, {highest:,} when examined, "
+        failed += f"and no frame before has found it more than {factor:g} times as large"
+        return f"{failed}. {learnt}; shadow testing (§2.4) still trusts that."
+    failed = f"Shadow-mode setting (§2.5) failed, as it knows {what} by a few rays"
+    return f"{failed}. {learnt}; shadow testing (§2.4) takes that to hold for all of it."
+
+
+# --- what can be taken away ---------------------------------------------------------------------------
+
+
+def bare(scene: Scene) -> Scene:
+    """Return a scene as one file of AFF can hold it: without textures, and with names that are words."""
+    objects = []
+    for one in scene.objects:
+        if HIDDEN not in [element for element in one.chain if isinstance(element, str)]:
+            plain = np.full_like(one.triangles.texture, -1)
+            objects.append(replace(one, triangles=replace(one.triangles, texture=plain)))
+    lights = tuple(replace(light, name=light.track or as_word(light.name), number=None) for light in scene.lights)
+    return replace(scene, objects=tuple(objects), textures=(), lights=lights)
+
+
+def with_primitives(scene: Scene, kept: Sequence[int] | NDArray[np.intp]) -> Scene:
+    """Return a scene with some of its primitives; objects that have none are gone."""
+    keeps = np.zeros(scene.primitive_count, np.bool_)
+    keeps[np.asarray(kept, np.intp)] = True
+    left = [subset(one, keeps[np.concatenate(held_by(scene, index))]) for index, one in enumerate(scene.objects)]
+    objects = [left[0], *(one for one in left[1:] if len(one.triangles) or len(one.quadrics))]
+    return replace(scene, objects=tuple(objects))
+
+
+def static_area(scene: Scene) -> float:
+    """Return the area of all triangles that never move."""
+    corners = scene.objects[0].triangles.corners.astype(np.float64)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(0.5 * np.linalg.norm(normals, axis=1).sum())
+
+
+def with_area(scene: Scene, area: float) -> Scene:
+    """Return a scene whose static triangles have this area together, by one more: far away, with its edge to all else.
+
+    The cells of `cells` are a part of that area: without it they would be others, and so their modes."""
+    static, missing = scene.objects[0], area - static_area(scene)
+    box = bounds(scene.objects, scene.animation, scene.time_range[0])
+    if missing <= 0.0 or box is None:
+        return scene
+    middle, radius = ball_of(box)
+    side = np.sqrt(2.0 * missing)
+    edges = np.array([[0.0, 0.0, 0.0], [side, 0.0, 0.0], [0.0, side, 0.0]])
+    corners = (np.add(middle, (_FAR * radius, 0.0, 0.0)) + edges)[None].astype(np.float32)
+    normals = np.tile(np.array([0.0, 0.0, 1.0], np.float32), (1, 3, 1))
+    number = np.zeros(1, np.int32)
+    one = Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
+    both = (static.triangles, one)
+    triangles = Triangles(**{f.name: np.concatenate([getattr(t, f.name) for t in both]) for f in fields(Triangles)})
+    parts, part_of = static.parts, static.part_of
+    if part_of is not None:
+        part_of = np.insert(part_of, len(static.triangles), len(parts)).astype(np.int32)
+        parts = (*parts, "area_left_out")
+    static = replace(static, triangles=triangles, parts=parts, part_of=part_of)
+    return replace(scene, objects=(static, *scene.objects[1:]))
+
+
+def _far_ones_first(scene: Scene, traced: Scene, wrong: WrongPixel, cancel: Cancel) -> NDArray[np.intp]:
+    """The primitives by how far their middles are from the way between what the pixel shows and the light whose answer
+    is wrong, and last those that the answer is about: what lies far away is rarely needed."""
+    renderer, frame, history, _ = _traced(traced, wrong, cancel)
+    find = find_at(renderer, frame, wrong.x, wrong.y, history, cancel)
+    assert find is not None
+    place = (wrong.x + 0.5) / frame.width, (wrong.y + 0.5) / frame.height
+    point = np.asarray(at_depth(frame, place, float(frame.depth[wrong.y, wrong.x])))
+    way = scene.light_positions(wrong.time)[find.light] - point
+    middles = np.empty((scene.primitive_count, 3))
+    for index, one in enumerate(scene.objects):
+        own = np.concatenate([one.triangles.corners.mean(axis=1), one.quadrics.to_object[:, :, 3]])
+        matrix = scene.animation.matrix(one.chain, wrong.time)
+        middles[np.concatenate(held_by(scene, index))] = own @ matrix[:3, :3].T + matrix[:3, 3] - point
+    along = np.clip(middles @ way / max(float(way @ way), 1e-300), 0.0, 1.0)
+    away = np.linalg.norm(middles - along[:, None] * way, axis=1)
+    for number in (int(frame.primitive[wrong.y, wrong.x]), find.primitive, find.blocker):
+        if number >= len(scene.objects[0].triangles):  # after those that stand for the area that was left out
+            number -= traced.primitive_count - scene.primitive_count
+        away[max(number, 0)] = -1.0
+    return np.argsort(-away, kind="stable")
+
+
+KINDS = ("frames", "lights", "objects", "primitives")
+"""What can be taken away, in the order in which it is tried: first what makes further tries quick."""
+
+
+def _parts(kind: str, scene: Scene, wrong: WrongPixel, traced: Callable[[Scene], Scene], cancel: Cancel) -> list[Any]:
+    """What there is of a kind, each as `_only` takes it; what is needed least comes first."""
+    if kind == "frames":
+        return list(wrong.before)
+    if kind == "lights":
+        return list(scene.lights)
+    primitives = _far_ones_first(scene, traced(scene), wrong, cancel)
+    if kind == "primitives":
+        return list(primitives[:, None])
+    numbers = thing_numbers(scene)[primitives]
+    _, nearest = np.unique(numbers[::-1], return_index=True)
+    return [primitives[numbers == numbers[::-1][first]] for first in -np.sort(-nearest)]
+
+
+def _only(kind: str, scene: Scene, wrong: WrongPixel, kept: list[Any]) -> tuple[Scene, WrongPixel]:
+    """What is left with some of a kind."""
+    if kind == "frames":
+        return scene, replace(wrong, before=tuple(kept))
+    if kind == "lights":
+        return replace(scene, lights=tuple(kept)), wrong
+    return with_primitives(scene, np.concatenate([np.empty(0, np.intp), *kept])), wrong
+
+
+def _count(kind: str, now: Shrunk) -> int:
+    return len(np.unique(thing_numbers(now.scene))) if kind == "objects" else getattr(now.counts, kind)
+
+
+class Shrink(Run[Shrunk]):
+    """Shrinking as a run; its `frames` are sizes of chunks that are left out, as far as these are known."""
+
+    name = "shrinking"
+    unit = "step"
+    verifies = False
+
+    def __init__(self, scene: Scene, wrong: WrongPixel) -> None:
+        """Raises ValueError, in one line, where settings or pixel are out of range."""
+        self.wrong = wrong.checked()
+        super().__init__(scene, 1)
+
+    def steps(self, scene: Scene, world: World | None, cancel: Cancel) -> Iterator[Shrunk]:
+        settings = self.wrong.settings
+        self.make_ready([settings.method], scene, settings.accelerator, cancel)
+        frames = tuple(WarmupFrame(one.time, one.camera or scene.camera_at(one.time)) for one in self.wrong.before)
+        wrong = replace(self.wrong, camera=self.wrong.camera or scene.camera_at(self.wrong.time), before=frames)
+        scene = bare(scene)
+        self._sign = np.sign(error(scene, wrong, cancel))
+        if not self._sign:
+            here = f"pixel {wrong.x},{wrong.y} is not wrong"
+            after = f"after {len(frames)} frame{'s' * (len(frames) != 1)}"
+            raise ValueError(f"{here}: by {settings.method}, {after}, no shadow answer is wrong there that can be seen")
+        now = Shrunk(scene, wrong, Counts(scene.primitive_count, len(scene.lights), len(frames)), 1)
+        yield now
+        if Method.parse(settings.method).uses_cells:
+            area = static_area(scene)
+            for smaller in self._until_all_is_needed(now, lambda scene: with_area(scene, area), cancel):
+                now = smaller
+                yield replace(now, scene=with_area(now.scene, area))
+            now = replace(now, scene=with_area(now.scene, area))
+        yield from self._until_all_is_needed(now, lambda scene: scene, cancel)
+
+    def _until_all_is_needed(self, now: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:
+        """Leave out what is not needed of each kind until nothing more can be; `traced` makes of a scene that is left
+        what is traced."""
+        done: set[str] = set()
+        while len(done) < len(KINDS):
+            for kind in [kind for kind in KINDS if kind not in done]:
+                sizes = sum(_count(other, now).bit_length() for other in KINDS if other not in done)
+                self.frames = self.traced + sizes
+                for smaller in self._without(kind, now, traced, cancel):
+                    if smaller.counts != now.counts:
+                        done.clear()
+                    now = smaller
+                    yield now
+                done.add(kind)
+
+    def _without(self, kind: str, begin: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:
+        """Leave out what is not needed of a kind; gives what is left whenever that is less, and at last."""
+        now, parts = begin, _parts(kind, begin.scene, begin.wrong, traced, cancel)
+
+        def does(fewer: list[Any]) -> bool:
+            """Whether the pixel is wrong with these alone."""
+            nonlocal now, parts
+            scene, wrong = _only(kind, begin.scene, begin.wrong, fewer)
+            now = replace(now, tries=now.tries + 1)
+            self.label = f"{len(parts):,} of {_count(kind, begin):,} {kind}"
+            self._wake()
+            shows = np.sign(error(traced(scene), wrong, cancel)) == self._sign
+            if shows:
+                now, parts = replace(now, scene=scene, wrong=wrong), fewer
+            return bool(shows)
+
+        kept = (parts[-(1 << power) :] for power in range((len(parts) // 2).bit_length()))
+        if any(map(does, kept)):
+            yield now
+        size = 1 << len(parts).bit_length() >> 1
+        while size:
+            start, were = 0, len(parts)
+            while start < len(parts):
+                if does(parts[:start] + parts[start + size :]):
+                    yield now
+                else:
+                    start += size
+            if size > 1 or len(parts) == were:
+                size //= 2
+                self.progressed(self.label)
+        yield now

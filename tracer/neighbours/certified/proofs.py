@@ -1,0 +1,79 @@
+"""What is certified of cells, as proofs that others can check: which rays, and the primitives that it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.neighbours.certified.cell_prism import put_cell
+from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, named_by
+from tracer.neighbours.certified.store import CertificateStore
+from tracer.runtime.kernels import kernel
+from tracer.visibility.error_bounds import BOX
+from tracer.visibility.shaft import make_prism_shaft
+
+
+class Proof(NamedTuple):
+    """That a light is hidden from a cell by the primitives `by` together, or that nothing static hides it: `verdict` is
+    "full" or "lit"."""
+
+    cell: int
+    light: int
+    verdict: str
+    by: tuple[int, ...]
+
+
+@kernel
+def _put(shaft, rows, owner, place, scale):
+    side = 1.0 if owner % 2 == 0 else -1.0
+    u, v, size = np.float64(place[0]), np.float64(place[1]), np.float64(place[2])
+    return put_cell(shaft, rows, owner // 2, side, u, v, size, scale)
+
+
+def prism_of(store: CertificateStore, cell: int) -> NDArray[np.float64]:
+    """(6, 3): the corners of the prism in which a cell's shadow rays end, of its floor and then of its ceiling."""
+    shaft, cells = make_prism_shaft(), store.cells
+    _put(shaft, store.occluders.rows, int(cells.owner[cell]), cells.place[cell], store.scale)
+    return shaft.corners.T.copy()
+
+
+def proofs_of(store: CertificateStore, seen: Iterable[int]) -> list[Proof]:
+    """What is certified of cells, and of the cells that they are parts of where it was proved of these."""
+    found: dict[Proof, None] = {}
+    cells = store.cells
+    for leaf in seen:
+        for light in np.flatnonzero(store.certified).tolist():
+            state, cell = (int(cells.words[leaf]) >> (2 + 2 * light)) & 3, int(leaf)
+            if state == LIT:
+                found[Proof(cell, light, "lit", ())] = None
+            elif state == FULL:
+                while cell and cells.lists[cell, light] == NOBODY:
+                    cell = int(cells.parent[cell])
+                names = named_by(cells, cell, light) if cell else None
+                if names is not None and len(names):
+                    found[Proof(cell, light, "full", tuple(names.tolist()))] = None
+    return list(found)
+
+
+def as_json(store: CertificateStore, seen: Iterable[int], triangles: int) -> dict[str, Any]:
+    """Proofs with all that they rest on, each number exactly as kernels have it.
+
+    The first `triangles` of the primitives are triangles: of the others, and of what moves, only the boxes count, and
+    these are empty for what moves."""
+    proofs = proofs_of(store, seen)
+    numbers = list(dict.fromkeys(proof.cell for proof in proofs))
+    place = {cell: k for k, cell in enumerate(numbers)}
+    rows = store.occluders.rows.astype(np.float64)
+    return {
+        "lights": store.lights.astype(np.float64).tolist(),
+        "triangles": rows[:triangles, :9].tolist(),
+        "boxes": rows[triangles:, BOX : BOX + 6].tolist(),
+        "cells": [prism_of(store, cell).tolist() for cell in numbers],
+        "proofs": [
+            {"cell": place[proof.cell], "light": proof.light, "verdict": proof.verdict, "by": list(proof.by)}
+            for proof in proofs
+        ],
+    }

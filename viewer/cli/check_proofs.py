@@ -1,0 +1,61 @@
+"""The command `check-proofs`: hold proofs against exact arithmetic."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from collections import Counter
+from pathlib import Path
+
+from viewer.cli.arguments import FAILED, Parser, count
+from viewer.cli.console import working
+from viewer.output.proof_checker import Checker
+from viewer.util.numbers import several
+
+SHOWN = 10  # of the proofs that do not hold
+EPILOG = """\
+examples:
+  shadowcull check-proofs proofs.json
+  shadowcull check-proofs proofs.json --most 500
+
+The exit code is 0 only if all hold that were checked. The checker shares no code with the tracer: all is decided by
+integers. Other programs can be held against it, too: docs/proofs.md tells what is in the file.
+"""
+
+
+def parser() -> Parser:
+    parser = Parser("check-proofs", "Check proofs of visibility in exact arithmetic.", EPILOG)
+    parser.add_argument("proofs", type=Path, metavar="FILE", help="proofs, as `shadowcull prove` writes them")
+    help_ = "how many are checked, evenly chosen (default: all)"
+    parser.add_argument("--most", type=count(1, 2**31 - 1), metavar="N", help=help_)
+    return parser
+
+
+def run(given: Namespace) -> int:
+    """Check; raises ValueError and OSError, each in one line, or Cancelled."""
+    try:
+        checker = Checker(json.loads(given.proofs.read_text(encoding="utf-8")))
+    except (ValueError, RecursionError) as error:  # JSON's own among them
+        raise ValueError(f"{given.proofs}: {error}") from None
+    total = len(checker.proofs)
+    most = min(given.most or total, total)
+    held, failed = Counter[str](), []
+    with working() as work:
+        for done in range(most):
+            work.count("checking", done, most)
+            if work.cancelled():
+                most = done
+                break
+            number = done * total // most
+            proof = checker.proofs[number]
+            answer = checker.check(proof)
+            held[proof[2]] += answer.holds
+            if not answer.holds:
+                failed.append(f"proof {number} (cell {proof[0]}, light {proof[1]}, {proof[2]}): {answer.why}")
+    for line in failed[:SHOWN]:
+        print(line)
+    if len(failed) > SHOWN:
+        print(f"and {len(failed) - SHOWN:,} more")
+    print(f"{several(most, 'proof')} checked of {total:,}: {held['full']:,} hidden and {held['lit']:,} lit hold, "
+          f"{len(failed):,} do not")  # fmt: skip
+    return FAILED if failed else 0
