@@ -34,7 +34,7 @@ from tracer.scene.model import Camera, Scene, Triangles
 from tracer.scene.things import held_by, thing_numbers
 
 Cancel = Callable[[], bool]
-_FAR = 1000.0  # times the radius of what is left: where the area is that was left out
+_FAR = 1000.0  # times the radius of what is left, with camera and lights: where the area is that was left out
 
 
 @dataclass(frozen=True)
@@ -195,13 +195,14 @@ def with_area(scene: Scene, area: float) -> Scene:
     if missing <= 0.0 or box is None:
         return scene
     middle, radius = ball_of(box)
+    eyes = np.array([scene.camera.position, *scene.light_positions(scene.time_range[0])])
+    radius = max(radius, float(np.linalg.norm(eyes - middle, axis=1).max()))
     side = np.sqrt(2.0 * missing)
     edges = np.array([[0.0, 0.0, 0.0], [side, 0.0, 0.0], [0.0, side, 0.0]])
     corners = (np.add(middle, (_FAR * radius, 0.0, 0.0)) + edges)[None].astype(np.float32)
     normals = np.tile(np.array([0.0, 0.0, 1.0], np.float32), (1, 3, 1))
     number = np.zeros(1, np.int32)
-    one = Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
-    both = (static.triangles, one)
+    both = static.triangles, Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
     triangles = Triangles(**{f.name: np.concatenate([getattr(t, f.name) for t in both]) for f in fields(Triangles)})
     parts, part_of = static.parts, static.part_of
     if part_of is not None:
@@ -329,10 +330,11 @@ class Shrink(Run[Shrunk]):
                 now, parts = replace(now, scene=scene, wrong=wrong), fewer
             return bool(shows)
 
-        kept = (parts[-(1 << power) :] for power in range((len(parts) // 2).bit_length()))
-        if any(map(does, kept)):
-            yield now
-        size = 1 << len(parts).bit_length() >> 1
+        for power in range((len(parts) // 2).bit_length()):  # perhaps the last ones are enough, which is tried quickly
+            if does(parts[-(2**power) :]):
+                yield now
+                break
+        size = 2 ** len(parts).bit_length() // 2
         while size:
             start, were = 0, len(parts)
             while start < len(parts):

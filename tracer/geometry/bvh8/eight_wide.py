@@ -8,8 +8,7 @@ import numpy as np
 
 from tracer.geometry.bvh8.layout import PRIMITIVES, QUADRIC
 from tracer.geometry.bvh8.packet import DIRECTION, FAR, INVERSE, NUMBER, ORIGIN, ROW, T_MIN, T, U, V, three_of
-from tracer.geometry.bvh8.packet_tree import code_of
-from tracer.geometry.bvh8.placed import block_planes, triangles_of
+from tracer.geometry.bvh8.placed import block_planes, code_of, triangles_of
 from tracer.geometry.intersect import hit_quadric
 from tracer.geometry.rays import MISS, Ray
 from tracer.geometry.triangle_test import ZERO, crossing, terms_of
@@ -152,7 +151,7 @@ def nearest_in_block(block, a):
 
 
 @inlined
-def any_in_block(block, r, far):
+def any_of_eight(block, r, far):
     """The number of the first triangle in a block that a ray hits nearer than far, or MISS."""
     m = terms_of(r.ox, r.oy, r.oz, triangles_of(block))
     crosses, sign, _u, _v, area = crossing(r.dx, r.dy, r.dz, m)

@@ -10,6 +10,7 @@ import numpy as np
 from numba.core import types
 from numba.extending import overload
 
+from tracer.geometry.bvh8.eight_wide import any_of_eight, single_ray_at
 from tracer.geometry.bvh8.layout import COUNT, PRIMITIVES
 from tracer.geometry.bvh8.packet import (
     BLOCKED_T,
@@ -33,7 +34,7 @@ from tracer.geometry.bvh8.packet import (
 )
 from tracer.geometry.bvh8.placed import block_planes, child_planes, triangle_of, triangles_of
 from tracer.geometry.intersect import hit_quadric
-from tracer.geometry.rays import Ray
+from tracer.geometry.rays import MISS, Ray
 from tracer.geometry.triangle_test import ZERO, Terms, crossing, crossing_ahead, may_cross_ahead, terms_of, towards
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
@@ -45,10 +46,12 @@ from tracer.simd import (
     i32x16,
     lane_of,
     load_f32,
+    load_f32x8,
     load_f32x16,
     load_i32,
     load_i32x16,
     lowest_bit,
+    ones,
     select,
     store,
     store_where,
@@ -57,17 +60,19 @@ from tracer.simd import (
 
 @inlined
 def _inside_block(origin, memory, block, active):
-    """Find where the rays of active vectors enter and leave a block's box; the vectors of which some ray enters."""
+    """Find where rays of active vectors enter and leave a block's box; how many do, and the vectors that hold any."""
     planes = block_planes(block)
-    result = np.int64(0)
+    result, rays = np.int64(0), np.int64(0)
     while active != 0:
         v = lowest_bit(active)
         enter, leave = lanes_inside(origin, memory, v, planes)
         store(memory + ENTER * ROW + 64 * v, enter)
         store(memory + LEAVE * ROW + 64 * v, leave)
-        result |= np.int64(any_lane(enter <= leave)) << v
+        inside = bits_of(enter <= leave)
+        result |= np.int64(inside != 0) << v
+        rays += ones(inside)
         active &= active - 1
-    return result
+    return rays, result
 
 
 @inlined
@@ -143,15 +148,70 @@ def _distance(memory, v, crosses, height, area):
 
 
 @inlined
+def _terms_of_eight(memory):
+    a = memory + TERMS
+    return Terms(
+        load_f32x8(a), load_f32x8(a + 32), load_f32x8(a + 64), load_f32x8(a + 96), load_f32x8(a + 128),
+        load_f32x8(a + 160), load_f32x8(a + 192), load_f32x8(a + 224), load_f32x8(a + 256), load_f32x8(a + 288),
+    )  # fmt: skip
+
+
+@inlined
+def _any_of_prepared(memory, block, a):
+    (dx, dy, dz), m = three_of(a, DIRECTION), _terms_of_eight(memory)
+    crosses, _u, _w, area = crossing_ahead(dx, dy, dz, m)
+    if not any_lane(crosses):
+        return np.int32(MISS)
+    t = m.height * (np.float32(1) / area)
+    mask = crosses & (t >= load_f32(a + ENTER * ROW)) & (t <= load_f32(a + LEAVE * ROW))
+    bits = bits_of(mask & (t > load_f32(a + T_MIN * ROW)) & (t < load_f32(a + T * ROW)))
+    return load_i32(block + 4 * (PRIMITIVES + lowest_bit(bits))) if bits != 0 else np.int32(MISS)
+
+
+def any_for_one(origin, memory, block, a):
+    """The number of the first triangle in a block, after `prepare`, that one ray inside its box hits; or MISS."""
+    raise NotImplementedError("only kernels call this")
+
+
+@overload(any_for_one, jit_options=INLINED)
+def _any_for_one(origin, memory, block, a):
+    if isinstance(origin, types.NoneType):
+        return lambda origin, memory, block, a: any_of_eight(block, single_ray_at(a), load_f32(a + T * ROW))
+    return lambda origin, memory, block, a: _any_of_prepared(memory, block, a)
+
+
+@inlined
+def _any_one_by_one(origin, memory, block, active):
+    """Test each ray inside a block's box against its eight triangles at once, for any hits; the vectors that hit."""
+    found = np.int64(0)
+    while active != 0:
+        v = lowest_bit(active)
+        active &= active - 1
+        row = memory + 64 * v
+        rays = bits_of(load_f32x16(row + ENTER * ROW) <= load_f32x16(row + LEAVE * ROW))
+        while rays != 0:
+            a = row + 4 * lowest_bit(rays)
+            rays &= rays - 1
+            number = any_for_one(origin, memory, block, a)
+            if number != MISS:
+                found |= np.int64(1) << v
+                store(a + NUMBER * ROW, number)
+                store(a + T * ROW, BLOCKED_T)
+    return found
+
+
+@inlined
 def _meet_block(origin, memory, group, block, active, nearest):
     """Test the active vectors against a block's triangles, for the nearest hits or else for any; the vectors that hit.
 
     `nearest` is a constant, so that each of the two is compiled without the other."""
-    active = _inside_block(origin, memory, block, active)
+    rays, active = _inside_block(origin, memory, block, active)
     found = np.int64(0)
     if active == 0:
         return found
     triangles = prepare(origin, group, memory, block)
+    if not nearest and rays <= ones(triangles) * ones(active):  # fewer tests than those of sixteen rays at once
+        return _any_one_by_one(origin, memory, block, active)
     while triangles != 0:
         k = lowest_bit(triangles)
         triangles &= triangles - 1

@@ -15,7 +15,7 @@ from tracer.geometry.bvh8.layout import BLOCK, CHILDREN, NODE, QUADRIC
 from tracer.geometry.bvh8.packet import ROW, SCRATCH, T_MIN, T, lanes_inside
 from tracer.geometry.bvh8.packet_group import box_at, boxes_at, entering, frusta_of, looking, put_reaches, reaches_of
 from tracer.geometry.bvh8.packet_leaf import any_in_block, closest_in_block, quadric_in_child
-from tracer.geometry.bvh8.placed import child_planes, opened, root_of
+from tracer.geometry.bvh8.placed import child_planes, code_of, opened, root_of
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import MAX_DEPTH, WIDTH
@@ -46,12 +46,6 @@ STACK = 8 * (1 + (WIDTH - 1) * MAX_DEPTH)  # bytes
 def quadrics_in(node):
     """Which children of a node are quadrics, as bits."""
     return bits_of(load_i32x8(node + 4 * CHILDREN) <= np.int32(~QUADRIC))
-
-
-@inlined
-def code_of(node, c):
-    """The code of a node's c-th child."""
-    return np.int64(load_i32(node + 4 * (CHILDREN + c)))
 
 
 @inlined

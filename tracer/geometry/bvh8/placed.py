@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.geometry.bvh8.layout import BOX, NODE, SUBTREE
+from tracer.geometry.bvh8.layout import BOX, CHILDREN, NODE, SUBTREE
 from tracer.geometry.queries import DYNAMIC_OBJECTS, STATIC_GEOMETRY
 from tracer.geometry.shared_memory import built
 from tracer.geometry.triangle_test import Triangle
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import load_f32, load_f32x8, load_i64
+from tracer.simd import load_f32, load_f32x8, load_i32, load_i64
 from tracer.simd.records import F32At, block_size, pack, reading
 
 STATIC_TREE, RESTING_TREE, MOVING_TREE = range(3)
@@ -81,6 +81,12 @@ def trees_asked(data, which):
     static, moving = which & STATIC_GEOMETRY, which & DYNAMIC_OBJECTS
     asked = static * (STATIC_TREES // STATIC_GEOMETRY) | moving * (DYNAMIC_TREES // DYNAMIC_OBJECTS)
     return read_world(data).trees & asked
+
+
+@inlined
+def code_of(node, c):
+    """The code of a node's c-th child."""
+    return np.int64(load_i32(node + 4 * (CHILDREN + c)))
 
 
 @inlined

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.geometry.bvh8.eight_wide import any_in_block, any_quadric, children_of, single_ray_at
+from tracer.geometry.bvh8.eight_wide import any_of_eight, any_quadric, children_of, single_ray_at
 from tracer.geometry.bvh8.layout import BLOCK, CHILDREN, NODE, QUADRIC
 from tracer.geometry.bvh8.packet import BLOCKED_T, NUMBER, ROW, T, lanes_inside, mark_static
 from tracer.geometry.bvh8.packet_leaf import quadric_in_child
-from tracer.geometry.bvh8.packet_tree import STACK, code_of, open_rays, quadrics_in
-from tracer.geometry.bvh8.placed import MOVING_TREE, child_planes, opened, root_of, tree_of, trees_asked
+from tracer.geometry.bvh8.packet_tree import STACK, open_rays, quadrics_in
+from tracer.geometry.bvh8.placed import MOVING_TREE, child_planes, code_of, opened, root_of, tree_of, trees_asked
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.rays import MISS
 from tracer.geometry.wide_tree.topology import WIDTH
@@ -56,7 +56,7 @@ def _any_in_leaf(node, c, r, far, trees):
     code = code_of(node, c)
     if code <= ~QUADRIC:
         return any_quadric(r, far, trees, node, c)
-    return any_in_block(trees.blocks + BLOCK * ~code, r, far)
+    return any_of_eight(trees.blocks + BLOCK * ~code, r, far)
 
 
 @subkernel

@@ -18,8 +18,8 @@ import numpy as np
 from tracer.geometry.bvh8.eight_wide import Best, children_at, nearest_in_block, nearest_quadric, single_ray_at
 from tracer.geometry.bvh8.layout import BLOCK, CHILDREN, NODE, SUBTREE
 from tracer.geometry.bvh8.packet import LANES, NUMBER, PACKET, ROW, T, U, V
-from tracer.geometry.bvh8.packet_tree import CLOSED, STACK, code_of, open_rays, open_root, quadrics_in
-from tracer.geometry.bvh8.placed import STATIC_TREE, read_world, root_of, root_of_subtree, tree_of
+from tracer.geometry.bvh8.packet_tree import CLOSED, STACK, open_rays, open_root, quadrics_in
+from tracer.geometry.bvh8.placed import STATIC_TREE, code_of, read_world, root_of, root_of_subtree, tree_of
 from tracer.geometry.queries import STEPS, TESTS
 from tracer.geometry.triangle_test import ZERO
 from tracer.geometry.wide_tree.topology import WIDTH
