@@ -17,7 +17,7 @@ from tracer.culling.modes import FULL_SHADOW, MAX_CULLED_LIGHTS, NON_SHADOW
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
-from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_frame
+from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, UNKNOWN, boxes_of, make_grid
 from tracer.neighbours.environments.store import CANDIDATES
 from tracer.scene.lights import Light
 from tracer.settings import Settings
@@ -32,12 +32,12 @@ def test_a_point_is_in_the_box_of_its_cell_by_either_way_down():
             World(scene(corners)), point_lamps(np.array([[1.0, 1.0, 2.0]]) * scale + move), points
         )
         cells = store.tree.leaves_at(points)
-        boxes = boxes_of(store.tree.frame, store.tree.cells[cells])
+        boxes = boxes_of(store.tree.grid, store.tree.cells[cells])
         assert (cells != OUTSIDE).all() and (store.tree.child[cells] == 0).all()
         assert (points >= boxes[:, :3]).all() and (points <= boxes[:, 3:]).all()
         assert [store.tree.leaf_at(point) for point in points] == cells.tolist()
     assert store.tree.leaf_at(np.full(3, 1e9, np.float32)) == OUTSIDE
-    assert make_frame(np.zeros((2, 3))).levels >= 0
+    assert make_grid(np.zeros((2, 3))).nx >= 1
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
@@ -57,7 +57,7 @@ def test_whatever_is_proved_of_a_cell_holds_for_the_rays_into_it(accelerator: st
         points = np.concatenate([points, anywhere]).astype(np.float32)
         store = environment_store(world, point_lamps(places), points)
         cells = np.unique(store.tree.leaves_at(points))
-        boxes = boxes_of(store.tree.frame, store.tree.cells[cells])
+        boxes = boxes_of(store.tree.grid, store.tree.cells[cells])
         part = np.where(rng.random((len(cells), 16, 1)) < 0.4, rng.integers(0, 2, (len(cells), 16, 3)),
                         rng.random((len(cells), 16, 3)))  # fmt: skip
         ends = (boxes[:, None, :3] + part * (boxes[:, None, 3:] - boxes[:, None, :3])).astype(np.float32)

@@ -18,9 +18,9 @@ from tests.tracing.worlds import nasty_triangles, scene
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.culling.verdicts import Verdict
 from tracer.inspect.ray_tree import ray_tree
+from tracer.neighbours.lightbuffer.cube import BLOCKED, COUNT, FIRST, LIT, WIDTH_BITS
 from tracer.neighbours.lightbuffer.cubes import Cube, CubeMaker, items_of
 from tracer.neighbours.lightbuffer.moving import depths_of
-from tracer.neighbours.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, WIDTH_BITS
 from tracer.neighbours.lightbuffer.tell import Said, cell_of, full_depths, list_lengths, tell
 from tracer.scene.animation import Animation
 from tracer.scene.model import Cancelled

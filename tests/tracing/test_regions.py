@@ -15,8 +15,7 @@ from tracer.geometry.primitives import triangle_rows
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.inspect.ray_tree import ray_tree
-from tracer.neighbours.regions.grid import make_grid, region_boxes
-from tracer.neighbours.regions.store import RegionStore
+from tracer.neighbours.regions.store import RegionStore, make_grid, region_boxes
 from tracer.renderer import Renderer
 from tracer.scene.animation import Animation, Keys, TrackSet
 from tracer.scene.lights import LampTable, Light

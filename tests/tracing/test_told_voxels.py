@@ -45,7 +45,7 @@ def test_the_walk_that_is_told_ends_as_the_ray_does():
                 if walk.blocker >= 0:
                     one = rows[walk.blocker : walk.blocker + 1]
                     assert crossed_by(one, place.astype(np.float64), point[None].astype(np.float64)).all()
-                assert (walk.stop is Stop.HERE) == (store.state_at(point, light) != "none")
+                assert (walk.stop is Stop.HERE) == (store.describe(0, point, light)[0] != "none")
     assert min(stops[stop] for stop in (Stop.HERE, Stop.KNOWN, Stop.BLOCKED)) > 5, stops
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 
 import numpy as np
@@ -53,7 +54,8 @@ def test_every_part_of_a_triangle_lies_in_voxels_that_name_it():
         world = World(static_part(walk.scene))
         store = voxel_store(world, world.scene.light_positions(0.0))
         rows = world.triangles_of(0).rows.astype(np.float64)
-        named = [set(store.contents(number).tolist()) for number in range(store.grid.cubes)]
+        view = store.view(np.empty(0, np.int32))
+        named = [set(view.names[first:last].tolist()) for first, last in itertools.pairwise(view.starts)]
         across = np.linalg.norm(np.cross(rows[:, 3:6], rows[:, 6:]), axis=1)
         for i in np.flatnonzero(across > 0)[:60]:
             for u, v in np.sort(rng.random((20, 2)), axis=1):
@@ -109,7 +111,7 @@ def test_a_wall_hides_the_voxels_behind_it_and_no_others():
     points = (rng.random((4000, 3)) * (4.0, 3.0, 1.6) - (0, 0, 1.8)).astype(np.float32)
     crossed = crossed_by(rows, light[0], points.astype(np.float64))
     for point, hidden in zip(points, crossed, strict=True):
-        seen[bool(hidden), store.state_at(point, 0)] += 1
+        seen[bool(hidden), store.describe(0, point, 0)[0]] += 1
     assert seen[True, "lit"] == seen[False, "full"] == 0
     assert seen[True, "full"] > seen[True, "none"] and seen[False, "lit"] > 8 * seen[False, "none"], seen
 
@@ -124,7 +126,7 @@ def test_a_light_that_moves_is_classified_anew_and_others_are_not():
     store, fresh = voxel_store(world, places), voxel_store(world, moved)
     table = LampTable(tuple(Light(f"light {i}", (0.0, 0.0, 0.0)) for i in range(2)))
     store.update(table.at(moved), nothing_rests(1))
-    assert store.state_at(np.array([1, 1, 0], np.float32), 1) == "none"
+    assert store.describe(0, np.array([1, 1, 0], np.float32), 1)[0] == "none"
     assert not shadow_mode(store.words, 1).any() and shadow_mode(store.words, 0).any()
     made = store.classify(np.inf, 2).certificates
     assert 0 < made < fresh.grid.cubes

@@ -184,7 +184,7 @@ def _certify_regions(accelerator: str) -> None:
     store = certified.store
     store.wanted[:1] = True
     store.certify(Budget(), 1)
-    store.hidden_by(np.zeros(3, np.float32), 0)
+    store.describe(0, np.zeros(3, np.float32), 0)
 
 
 def render_tiny(method: str, lights: int, accelerator: str) -> None:

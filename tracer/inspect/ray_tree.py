@@ -239,7 +239,7 @@ class _Pixel:
         if self.lamps.radii[light] == 0:
             asked = {method for method, _ in self._stages}
             for method in work.methods:
-                state, _ = method.explain(self._seen.primitive(row), self._seen.end(row), light) or ("none", ())
+                state, _ = method.explain(self._seen.primitive(row), self._seen.end(row), light)
                 if method not in asked and state != "none":
                     return unused(state)
                 if state == "candidates":

@@ -157,8 +157,8 @@ class Auto(ShadowMethod):
         self.policy.finish(frame.seconds, shading, self._trials, free=free)
         self._trials = []
 
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        return self._certified.explain(primitive, point, light) if self._plan.needs_certificates else None
+    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        return self._certified.explain(primitive, point, light) if self._plan.needs_certificates else ("none", ())
 
     def because(self, answered: Answered) -> CullReason:
         return self._certified.because(answered)

@@ -18,16 +18,12 @@ from tracer.culling.stages import call_at, scratch_of
 from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.memory import without_refcount
 from tracer.methods.certified_lights import CertifiedLights
-from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.methods.interface import FrameView, Services, Stage
+from tracer.methods.spatial_cache import NOWHERE, WithStore
 from tracer.neighbours.area_lights.find_lamp_answers import find_answers
 from tracer.neighbours.area_lights.lamp_answers import LAMP_ANSWER_ROWS, answer_sample, lamp_answers_in
-from tracer.neighbours.certified.lookup import (
-    CELL_POINT_ROWS,
-    cell_points_in,
-    cull_by_certificates,
-    find_cells,
-    record_cells,
-)
+from tracer.neighbours.cells_of_space import record_cells
+from tracer.neighbours.certified.lookup import CELL_POINT_ROWS, cell_points_in, cull_by_certificates, find_cells
 from tracer.neighbours.certified.requests import (
     Requests,
     make_requests,
@@ -45,7 +41,7 @@ from tracer.shading.wave import wave_in
 from tracer.simd import any_lane, i32x16, i64_at, select
 from tracer.simd.records import pack
 from tracer.statistics import FrameStatistics
-from tracer.visibility.budget import Budget, Counts
+from tracer.visibility.budget import Budget
 
 SET_UP, SET_UP_LIGHT = 2e-6, 2e-7  # seconds for each primitive, and for each of these and each light
 
@@ -56,8 +52,8 @@ def find(data, call, light, count, counts):
     given, certified = call_at(call), view_at(data)
     found = cell_points_in(scratch_of(given))
     find_cells(certified, points_in(given.points), count, found)
-    if given.bounce == 0 and len(certified.cell) > 0:
-        record_cells(wave_in(given.rays, count), found, given.place, certified.cell)
+    if given.bounce == 0:
+        record_cells(certified.cell, given.place, wave_in(given.rays, count), found.unit)
 
 
 @native_callback
@@ -103,25 +99,21 @@ def request_in_tiles(view, camera, tiles, numbers, lights, buffers):
                 request_at_hits(certified, requests, lights, camera.origin, hits, place, inside)
 
 
-class CertifiedCells(ShadowMethod):
+class CertifiedCells(WithStore):
     """Makes certificates, within a budget, and culls by them."""
+
+    store: CertificateStore | None
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
-        self.store: CertificateStore | None = None
         self.scheduler: CertificateScheduler | None = None
-        self.made_now = False  # whether the store has been set up in this frame
-        self._clear()
-
-    def _clear(self) -> None:
-        """Nothing is known of a frame yet."""
         self._requests: Requests | None = None
-        self._cell = np.empty(0, np.int32)
+        self._cell = NOWHERE
         self._words: NDArray[np.unsignedinteger] | None = None
-        self._counts = Counts()
 
     def begin(self, frame: FrameView) -> None:
-        self._clear()
+        super().begin(frame)
+        self._requests = self._words = None
         self._cell = np.zeros(frame.settings.width * frame.settings.height, np.int32)
 
     def follows_rest(self) -> bool:
@@ -167,7 +159,7 @@ class CertifiedCells(ShadowMethod):
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "updated before"
         requests = self._requests if learns and self._requests is not None else make_requests(0)
-        view = self.store.view(len(frame.tiles), requests, self._cell if learns else np.empty(0, np.int32))
+        view = self.store.view(len(frame.tiles), requests, self._cell if learns else NOWHERE)
         rows = CELL_POINT_ROWS + (LAMP_ANSWER_ROWS if view.lamps.known.any() else 0)
         asks = finish if len(requests.key) else None
         return [Stage(view, find=find, choose=choose, finish=asks, rows=rows)]
@@ -197,19 +189,12 @@ class CertifiedCells(ShadowMethod):
         cell, words = self._cell.reshape(shape), self._words_seen() if self._words is None else self._words
         return {"cells": np.where(cell > 0, cell, np.int32(-1)), "certificates": words.reshape(shape)}
 
-    def report(self, statistics: FrameStatistics) -> None:
-        statistics.add_made(self._counts)
-
     def finish(self, frame: FrameView, statistics: FrameStatistics) -> None:
         if self.scheduler is not None:
             self.scheduler.finish(self._counts.certificates, statistics.shadow.due)
 
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        return None if self.store is None else self.store.describe(primitive, point, light)
-
     def because(self, answered: Answered) -> CullReason:
-        known = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
-        state, named = known or ("none", ())
+        state, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
         if state == "candidates":
             return CullReason(Verdict.CANDIDATES, named)
         if state == ("lit" if answered.lit else "full"):
@@ -217,7 +202,8 @@ class CertifiedCells(ShadowMethod):
         return CullReason(Verdict.BEAM)  # of a lamp, or where a point lies between two cells
 
     def forget(self) -> None:
-        self.store = self.scheduler = None
+        super().forget()
+        self.scheduler = None
 
     @property
     def price(self) -> float:
@@ -230,10 +216,6 @@ class CertifiedCells(ShadowMethod):
     def pays_as_a_rule(self) -> bool:
         """Whether certificates can be expected to save time."""
         return self.services.cost_model.costly_rays
-
-    @property
-    def memory_bytes(self) -> int:
-        return 0 if self.store is None else self.store.bytes
 
 
 def certified(services: Services) -> CertifiedCells | CertifiedLights:

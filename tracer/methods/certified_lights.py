@@ -12,35 +12,28 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, looked_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import aligned_rows, without_refcount
 from tracer.geometry.rays import RAY_OFFSET
-from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
-from tracer.neighbours.area_lights.hidden_samples import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
+from tracer.methods.interface import FrameView, Services, Stage
+from tracer.methods.spatial_cache import WORDS, WithStore, hits_in_block, want_hits
+from tracer.neighbours.area_lights.lamp_answers import ALL, HIDDEN_SAMPLE_ROWS, answer_hidden, hidden_samples_in
 from tracer.neighbours.area_lights.recent_occluders import RecentOccluders, find_hidden, is_lamp
 from tracer.neighbours.regions.lookup import look, want_around
 from tracer.neighbours.regions.store import RegionStore, RegionView
 from tracer.runtime.kernels import kernel, native_callback
-from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.shading.points import points_in
-from tracer.shading.primary import block_at, blocks_of
-from tracer.simd import address_of, any_lane, gather_f32x16, gather_i32x16, i32x16, i64_at, maximum, to_f32
-from tracer.simd import select as choose_lanes
-from tracer.simd.records import I64x2D, pack, reading
-from tracer.statistics import FrameStatistics
-from tracer.visibility.budget import Budget, Counts
+from tracer.shading.primary import blocks_of
+from tracer.simd import any_lane, i64_at, maximum
+from tracer.simd.records import I64x2D, reading
+from tracer.visibility.budget import Budget
 from tracer.visibility.error_bounds import BOX, CORNER_ERROR, ROW, SureHitLength
 
 SET_UP = 1.5e-6  # seconds for each primitive
-WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
-
-
 NO_TRIANGLES = aligned_rows(0, ROW)
 
 
@@ -94,36 +87,23 @@ def want_in_tiles(selection, camera, tiles, numbers, buffers):
 
     Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `selection` is the address of a
     `Selection`."""
-    regions, buffers = selection_at(selection).regions, without_refcount(buffers)
-    width, primitives, depths = np.int32(buffers.primitive.shape[1]), buffers.primitive, buffers.depth
-    eye = camera.origin
+    regions, buffers, eye = selection_at(selection).regions, without_refcount(buffers), camera.origin
     largest = max(abs(eye[0]), max(abs(eye[1]), abs(eye[2])))
     for number in numbers:
-        tile = tiles[number]
-        for block in range(blocks_of(tile)):
-            x, y, inside = block_at(tile, block)
-            if not any_lane(inside):
-                continue
-            place = choose_lanes(inside, y * width + x, i32x16(0))
-            hit = inside & (gather_i32x16(address_of(primitives), place) >= np.int32(0))
-            depth = gather_f32x16(address_of(depths), place)
-            dx, dy, dz = primary_direction(camera, to_f32(x), to_f32(y))
-            room = np.float32(2 * RAY_OFFSET) * (maximum(depth, -depth) + largest)
-            want_around(regions, eye[0] + depth * dx, eye[1] + depth * dy, eye[2] + depth * dz, room, hit)
+        for block in range(blocks_of(tiles[number])):
+            hit, depth, point = hits_in_block(camera, buffers, tiles[number], block)
+            if any_lane(hit):
+                want_around(regions, point, np.float32(2 * RAY_OFFSET) * (maximum(depth, -depth) + largest), hit)
 
 
-class CertifiedLights(ShadowMethod):
+class CertifiedLights(WithStore):
     """Finds out which lights matter to regions, within a budget, and looks at no others."""
+
+    store: RegionStore | None
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)
-        self.store: RegionStore | None = None
         self._rows = NO_TRIANGLES  # what recent occluders are taken from, where there are lamps
-        self.made_now = False  # whether the store has been set up in this frame
-        self._counts = Counts()
-
-    def begin(self, frame: FrameView) -> None:
-        self._counts = Counts()
 
     def update(self, frame: FrameView) -> None:
         self.made_now = self.store is None
@@ -142,12 +122,7 @@ class CertifiedLights(ShadowMethod):
         store = self.store
         assert store is not None, "updated before"
         selection = Selection(store.view(), np.zeros((0, WORDS), np.int64), self._recent(frame.shading.lamps))
-        block, shares = pack(selection), np.array_split(np.arange(len(frame.tiles)), 8 * frame.workers)
-
-        def work(chunk: int, worker: int) -> None:
-            want_in_tiles(block.ctypes.data, frame.rays, frame.tiles, shares[chunk], frame.buffers)
-
-        for_each_chunk(work, len(shares), frame.workers, frame.cancel)
+        want_hits(frame, want_in_tiles, selection, 8 * frame.workers)
         self._counts = store.certify(Budget(frame.settings.certificates, seconds), frame.workers, frame.cancel)
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
@@ -170,38 +145,24 @@ class CertifiedLights(ShadowMethod):
             triangles = self.services.world.triangles_of(0)
             self._rows = aligned_rows(len(triangles.rows), ROW)
             self._rows[:, :CORNER_ERROR], self._rows[:, CORNER_ERROR], self._rows[:, BOX:] = triangles
+        sure = SureHitLength(len(self._rows), self.store.hidden.blockers.longest, 0.0)
         return RecentOccluders(
-            self._rows,
-            SureHitLength(len(self._rows), self.store.hidden.blockers.longest, 0.0),
-            lamps.places,
-            lamps.radii,
-            lamps.samples,
-            lamps.first,
-            self.services.cost_model.least_samples,
-            placed.any_hit,
-            placed.data,
-        )
+            self._rows, sure, lamps.places, lamps.radii, lamps.samples, lamps.first,
+            self.services.cost_model.least_samples, placed.any_hit, placed.data,
+        )  # fmt: skip
 
     def keep(self, frame: FrameView) -> None:
         assert self.store is not None, "updated before"
         self.store.keep_within(1e6 * frame.settings.certificate_memory)
 
-    def report(self, statistics: FrameStatistics) -> None:
-        statistics.add_made(self._counts)
-
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        if self.store is None:
-            return None
-        hider = self.store.hidden_by(point, light)
-        return ("full", (hider,)) if hider >= 0 else ("none", ())
-
     def because(self, answered: Answered) -> CullReason:
-        _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light) or ("", ())
+        _, named = self.explain(answered.primitive, np.array(answered.point, np.float32), answered.light)
         # What no region hides was hidden, sample by sample, by what had hidden it from neighbours.
         return CullReason(Verdict.PASSED_OVER if named else Verdict.BEAM, named)
 
     def forget(self) -> None:
-        self.store, self._rows = None, NO_TRIANGLES
+        super().forget()
+        self._rows = NO_TRIANGLES
 
     @property
     def price(self) -> float:
@@ -215,4 +176,4 @@ class CertifiedLights(ShadowMethod):
 
     @property
     def memory_bytes(self) -> int:
-        return self._rows.nbytes + (0 if self.store is None else self.store.bytes)
+        return self._rows.nbytes + super().memory_bytes

@@ -173,10 +173,10 @@ class ShadowMethod:
     def finish(self, frame: FrameView, statistics: FrameStatistics) -> None:
         """The frame is done, and took what its statistics say."""
 
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        """What is known of a light at a point (3,) above a primitive, in a word, and the primitives that this rests on;
-        None where this method knows nothing of single points."""
-        return None
+    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        """What is known of a light at a point (3,) above a primitive, in a word, "none" for nothing, and the primitives
+        that this rests on."""
+        return "none", ()
 
     def because(self, answered: Answered) -> CullReason:
         """Why a stage of this method could answer a shadow ray of the last frame."""

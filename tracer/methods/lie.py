@@ -8,46 +8,28 @@ vector, and `choose` answers the others' rays by what their cells know, asking t
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.culling.shadow_testing import shadow_batch_in
-from tracer.culling.stages import call_at, scratch_of, vectors
+from tracer.culling.stages import call_at, scratch_of, selects
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.geometry.camera import primary_direction
 from tracer.geometry.memory import without_refcount
 from tracer.methods.interface import FrameView, Stage
-from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.methods.spatial_cache import NOWHERE, WORDS, CellsOfSpace, hits_in_block, want_hits
+from tracer.neighbours.cells_of_space import record_cells, want
 from tracer.neighbours.environments.ask import answer, find_cells, select_lights
 from tracer.neighbours.environments.octree import cells_at, environments_at
 from tracer.neighbours.environments.sample import seen_points, settle_by_samples
-from tracer.neighbours.environments.store import EnvironmentStore
+from tracer.neighbours.environments.store import By, EnvironmentStore
 from tracer.runtime.kernels import kernel, native_callback
-from tracer.runtime.parallel import for_each_chunk
 from tracer.shading.points import points_in
-from tracer.shading.primary import block_at, blocks_of
+from tracer.shading.primary import blocks_of
 from tracer.shading.wave import wave_in
-from tracer.simd import (
-    address_of,
-    bits_of,
-    gather_f32x16,
-    gather_i32x16,
-    i32_at,
-    i32x16,
-    i64_at,
-    local_memory,
-    lowest_bit,
-    store,
-    to_f32,
-)
-from tracer.simd import select as choose_lanes
-from tracer.simd.records import pack
+from tracer.simd import any_lane, bits_of, i64_at, local_memory, store
 
 CELL_ROWS = 1
-WORDS = 16  # of 64 vectors: as many as the waves of four tiles have
 
 
 @native_callback
@@ -55,17 +37,15 @@ def find(data, call, light, count, counts):
     """In which cell does the shadow ray of each point end?"""
     given, environments, cells = call_at(call), environments_at(data), scratch_of(call_at(call))[0].view(np.int32)
     find_cells(environments, points_in(given.points), count, cells)
-    if given.bounce == 0 and len(environments.cell) > 0:
-        wave = wave_in(given.rays, count)
-        for i in range(wave.size):
-            environments.cell[given.place[wave.pixel[i]]] = cells[i]
+    if given.bounce == 0:
+        record_cells(environments.cell, given.place, wave_in(given.rays, count), cells)
 
 
 @native_callback
 def select(data, call, light, count, counts):
     """Which lights must each vector of points look at?"""
     given, environments = call_at(call), environments_at(data)
-    if vectors(count) <= 64 * environments.looks.shape[1]:
+    if selects(environments.looks, count):
         select_lights(environments, count, scratch_of(given)[0].view(np.int32))
 
 
@@ -86,32 +66,13 @@ def want_in_tiles(data, camera, tiles, numbers, buffers):
 
     Tiles have `numbers` (k,) among all (n, 5); their hits are in the buffers; `data` is the address of an
     `EnvironmentView`."""
-    environments, buffers, lanes = environments_at(data), without_refcount(buffers), local_memory(64)
-    width, primitives, depths, eye = (
-        np.int32(buffers.primitive.shape[1]),
-        buffers.primitive,
-        buffers.depth,
-        camera.origin,
-    )
+    environments, buffers, cells = environments_at(data), without_refcount(buffers), local_memory(64)
     for number in numbers:
-        tile = tiles[number]
-        for block in range(blocks_of(tile)):
-            x, y, inside = block_at(tile, block)
-            place = choose_lanes(inside, y * width + x, i32x16(0))
-            hit = inside & (gather_i32x16(address_of(primitives), place) >= np.int32(0))
-            if bits_of(hit) == 0:
-                continue
-            depth = gather_f32x16(address_of(depths), place)
-            dx, dy, dz = primary_direction(camera, to_f32(x), to_f32(y))
-            at = cells_at(environments, eye[0] + depth * dx, eye[1] + depth * dy, eye[2] + depth * dz)
-            store(lanes, at)
-            rest, before = bits_of(hit), -1
-            while rest != 0:
-                cell = i32_at(lanes)[lowest_bit(rest)]
-                rest &= rest - 1
-                if cell != before and environments.open[cell]:
-                    environments.wanted[cell] = True
-                before = cell
+        for block in range(blocks_of(tiles[number])):
+            hit, _depth, (x, y, z) = hits_in_block(camera, buffers, tiles[number], block)
+            if any_lane(hit):
+                store(cells, cells_at(environments, x, y, z))
+                want(environments.wanted, environments.open, 1, cells, bits_of(hit))
 
 
 class Environments(CellsOfSpace):
@@ -120,36 +81,23 @@ class Environments(CellsOfSpace):
     store: EnvironmentStore | None
     coarse = 0  # how often cells are divided at most, 0 for as often as is worth it
 
-    def update(self, frame: FrameView) -> None:
-        settings, lamps = frame.settings, frame.shading.lamps
-        if self.store is None or self._memory != settings.certificate_memory:
-            memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
-            world = self.services.world
-            clock = self.services.clock
-            self.store = EnvironmentStore(world, lamps, frame.workers, memory, by_ray, clock, self.coarse)
-            self._memory = settings.certificate_memory
-        self.store.keep_within()
-        self.store.update(lamps, frame.resting)
+    def new_store(self, frame: FrameView, memory: float, by_ray: bool) -> EnvironmentStore:
+        given = self.services.world, frame.shading.lamps, frame.workers, memory, by_ray
+        return EnvironmentStore(*given, self.services.clock, self.coarse)
 
     def prepare(self, frame: FrameView) -> None:
         store, settings = self.store, frame.settings
         assert store is not None, "updated before"
+
+        def want() -> None:
+            want_hits(frame, want_in_tiles, store.view(np.zeros((0, WORDS), np.int64), NOWHERE), 16)
+
         if settings.certificates > 0 and store.waits:
-            want = partial(self._want, frame, store)
-            self._counts = store.work(want, settings.certificate_seconds, frame.cancel)
+            self._counts = store.work(want, settings.certificate_seconds, frame.cancel, self.settles_by(frame))
 
-    def _want(self, frame: FrameView, store: EnvironmentStore) -> None:
-        """Want the cells in which primary hits lie."""
-        view, shares = (
-            store.view(np.zeros((0, WORDS), np.int64), NOWHERE),
-            np.array_split(np.arange(len(frame.tiles)), 16),
-        )
-        block = pack(view)
-
-        def work(chunk: int, worker: int) -> None:
-            want_in_tiles(block.ctypes.data, frame.rays, frame.tiles, shares[chunk], frame.buffers)
-
-        for_each_chunk(work, len(shares), frame.workers, frame.cancel)
+    def settles_by(self, frame: FrameView) -> By | None:
+        """What finds out about cells, other than proofs."""
+        return None
 
     def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
         assert self.store is not None, "updated before"
@@ -169,18 +117,15 @@ class Environments(CellsOfSpace):
         store, point = self.store, np.array(answered.point, np.float32)
         if store is None:
             return CullReason(Verdict.ANSWERED)
-        state, named = store.state_at(point, answered.light)
+        state, named = store.describe(answered.primitive, point, answered.light)
         tree, cell = store.tree, store.tree.leaf_at(point)
-        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** tree.cells[cell, 3] * tree.frame.side
+        asked, side = int(store.asked_in(np.array(cell, np.int32))), 2.0 ** tree.cells[cell, 3] * tree.grid.side
         told = (
-            f"The cell is {side:.3g} wide, on level {tree.frame.levels - int(tree.cells[cell, 3])} of the octree; "
+            f"The cell is {side:.3g} wide, on level {tree.levels - int(tree.cells[cell, 3])} of the octree; "
             f"it asks {asked:,} of {len(store.places):,} lights."
         )
         verdict = Verdict.CELL_LIT if answered.lit else Verdict.CELL_FULL
         return CullReason(Verdict.CELL_TESTED if state == "candidates" else verdict, named, told)
-
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        return None if self.store is None else self.store.state_at(point, light)
 
 
 class SampledEnvironments(Environments):
@@ -188,10 +133,6 @@ class SampledEnvironments(Environments):
 
     coarse = 6
 
-    def prepare(self, frame: FrameView) -> None:
-        store, settings = self.store, frame.settings
-        assert store is not None, "updated before"
-        if settings.certificates > 0 and store.waits:
-            points = seen_points(frame.buffers.primitive, frame.buffers.depth, frame.rays)
-            want, by = partial(self._want, frame, store), settle_by_samples(self.services.world, points)
-            self._counts = store.work(want, settings.certificate_seconds, frame.cancel, by)
+    def settles_by(self, frame: FrameView) -> By:
+        points = seen_points(frame.buffers.primitive, frame.buffers.depth, frame.rays)
+        return settle_by_samples(self.services.world, points)

@@ -22,6 +22,7 @@ from tracer.culling.verdicts import Answered, CullReason, Verdict
 from tracer.geometry.accelerators import KD_TREE
 from tracer.geometry.rays import RAY_OFFSET
 from tracer.methods.interface import FrameView, Services, ShadowMethod, Stage
+from tracer.neighbours.lightbuffer.candidates import RAY_ROWS, buffer_rays_in
 from tracer.neighbours.lightbuffer.cubes import LEAST_SIDE, Cube, CubeMaker, Items, items_of
 from tracer.neighbours.lightbuffer.lookup import (
     CELLS,
@@ -41,7 +42,6 @@ from tracer.neighbours.lightbuffer.lookup import (
 )
 from tracer.neighbours.lightbuffer.moving import SIDE as MOVING_SIDE
 from tracer.neighbours.lightbuffer.moving import depths_of
-from tracer.neighbours.lightbuffer.rays import RAY_ROWS, buffer_rays_in
 from tracer.neighbours.lightbuffer.tell import LightCube, Said, tell
 from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
@@ -197,11 +197,6 @@ class LightBuffer(ShadowMethod):
         """Whether there is all that is asked of a light."""
         return buffer.static is not None and (buffer.resting is not None or not (self._since > 0).any())
 
-    def cube_of(self, light: int) -> Cube | None:
-        """What a light sees of all that never moves, None where it has no buffer."""
-        buffer = self.buffers.get(light)
-        return None if buffer is None else buffer.static
-
     def why_not(self, light: int) -> str:
         """Why a light has no buffer, in words; nothing for one that has."""
         if light >= MAX_CULLED_LIGHTS:
@@ -214,7 +209,8 @@ class LightBuffer(ShadowMethod):
     def layers(self, frame: FrameView) -> dict[str, Any]:
         places = frame.shading.lamps.places
         shown = [
-            LightCube(places[k], self.cube_of(k), self.why_not(k)) for k in range(min(self._lights, MAX_CULLED_LIGHTS))
+            LightCube(places[k], self.buffers[k].static if k in self.buffers else None, self.why_not(k))
+            for k in range(min(self._lights, MAX_CULLED_LIGHTS))
         ]
         return {"light cubes": tuple(shown)} if shown else {}
 

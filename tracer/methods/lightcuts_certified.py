@@ -12,9 +12,10 @@ from numba import carray
 
 from tracer.culling.counters import SHADOW_COUNTERS
 from tracer.culling.stages import call_at, selects, vectors
-from tracer.methods.certified_lights import WORDS, CertifiedLights
+from tracer.methods.certified_lights import CertifiedLights
 from tracer.methods.interface import FrameView, Services, Stage
 from tracer.methods.lightcuts import Lightcuts
+from tracer.methods.spatial_cache import WORDS
 from tracer.neighbours.regions.lookup import look
 from tracer.neighbours.regions.store import RegionView
 from tracer.runtime.kernels import native_callback

@@ -11,20 +11,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS
-from tracer.culling.modes import MAX_CULLED_LIGHTS, POINT_MODE_ROWS, look_up, point_modes_in, shadow_modes
+from tracer.culling.counters import STEPS
+from tracer.culling.modes import POINT_MODE_ROWS, look_up, point_modes_in, shadow_modes
 from tracer.culling.shadow_testing import shadow_batch_in
 from tracer.culling.stages import call_at, scratch_of, vectors
 from tracer.culling.verdicts import Answered, CullReason, Verdict
-from tracer.geometry.boxes import segments_miss_box
 from tracer.methods.interface import FrameView, Stage
 from tracer.methods.spatial_cache import NOWHERE, CellsOfSpace
+from tracer.neighbours.cells_of_space import answer_in_cells, record_cells
 from tracer.neighbours.voxels.store import VoxelStore
 from tracer.neighbours.voxels.tell import Stop
-from tracer.neighbours.voxels.view import voxel_view_at
-from tracer.neighbours.voxels.walk import full_and_null, walk
+from tracer.neighbours.voxels.walk import full_and_null, voxel_view_at, walk
 from tracer.runtime.kernels import native_callback
 from tracer.shading.points import points_in
 from tracer.shading.wave import wave_in
@@ -42,20 +40,18 @@ def find(data, call, light, count, counts):
         found.looked_up[v] = 0
         x, y, z = load_three(points.lifted, v)
         store(address_of(found.unit) + 64 * v, cubes_at(grid, x, y, z, grid.nx * grid.ny * grid.nz))
-    if given.bounce == 0 and len(voxels.cell) > 0:
-        wave = wave_in(given.rays, count)
-        for i in range(wave.size):
-            voxels.cell[given.place[wave.pixel[i]]] = found.unit[i]
+    if given.bounce == 0:
+        record_cells(voxels.cell, given.place, wave_in(given.rays, count), found.unit)
 
 
 @native_callback
 def choose(data, call, light, count, counts):
     """Answer the rays to a light of which voxels are known."""
     given, voxels = call_at(call), voxel_view_at(data)
-    if light >= min(MAX_CULLED_LIGHTS, len(voxels.slot)) or voxels.slot[light] < 0:
+    if light >= len(voxels.known) or voxels.known[light] == 0:
         return
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), point_modes_in(scratch_of(given))
-    counted, sample, slot = i64_at(counts), given.samples[given.sample], voxels.slot[light]
+    counted, sample = i64_at(counts), given.samples[given.sample]
     place, outside = (sample[0], sample[1], sample[2]), np.int32(voxels.grid.nx * voxels.grid.ny * voxels.grid.nz)
     for v in range(vectors(count)):
         live = np.int64(batch.live[v])
@@ -69,20 +65,10 @@ def choose(data, call, light, count, counts):
         rest, end = live & ~(full | null) & bits_of(unit < outside), load_three(points.lifted, v)
         if rest != 0:
             begin = select(mask16(rest), unit, i32x16(np.int32(0)))
-            blocked, lit = walk(voxels, place, light, slot, end, begin, rest, counted)
+            blocked, lit = walk(voxels, place, light, end, begin, rest, counted)
             walked = blocked | lit
             full, null = full | blocked, null | lit
-        for k in range(len(voxels.resting)):
-            box = voxels.resting[k]
-            if null != 0:
-                way = end[0] - place[0], end[1] - place[1], end[2] - place[2]
-                null &= bits_of(segments_miss_box(place, way, (box[0], box[1], box[2]), (box[3], box[4], box[5])))
-        counted[CULLED] += ones(full & ~walked)
-        counted[DYNAMIC_ONLY] += ones(null & ~walked)
-        counted[CANDIDATES_ONLY] += ones((full | null) & walked)
-        batch.candidates[v] |= (full | null) & walked
-        batch.live[v] = live & ~(full | null)
-        batch.lit[v] |= null
+        answer_in_cells(batch, v, full, null, walked, voxels.resting, place, end, counted)
 
 
 class Voxels(CellsOfSpace):
@@ -90,14 +76,9 @@ class Voxels(CellsOfSpace):
 
     store: VoxelStore | None
 
-    def update(self, frame: FrameView) -> None:
-        settings = frame.settings
-        if self.store is None or self._memory != settings.certificate_memory:
-            memory, by_ray = 1e6 * settings.certificate_memory, settings.accelerator == "kdtree"
-            lights = len(frame.lights)
-            self.store = VoxelStore(self.services.world, lights, frame.workers, memory, by_ray, self.services.clock)
-            self._memory = settings.certificate_memory
-        self.store.update(frame.shading.lamps, frame.resting)
+    def new_store(self, frame: FrameView, memory: float, by_ray: bool) -> VoxelStore:
+        world, clock = self.services.world, self.services.clock
+        return VoxelStore(world, len(frame.lights), frame.workers, memory, by_ray, clock)
 
     def prepare(self, frame: FrameView) -> None:
         assert self.store is not None, "updated before"
@@ -124,6 +105,3 @@ class Voxels(CellsOfSpace):
         named = (found.blocker,) if found.blocker >= 0 else ()
         said = found.in_words(self.store.shown(), answered.light)
         return CullReason(verdict if found.stop is Stop.HERE else Verdict.VOXEL_WALK, named, said)
-
-    def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]] | None:
-        return None if self.store is None else (self.store.state_at(point, light), ())

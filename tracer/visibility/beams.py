@@ -137,7 +137,7 @@ def put_beam(beam, points, bits, first, last, light, radius, within):
     some = lifted[0, i], lifted[1, i], lifted[2, i]
 
     # Bound the points by a box.
-    low, high = (f32x16(some[0]), f32x16(some[1]), f32x16(some[2])), (f32x16(some[0]), f32x16(some[1]), f32x16(some[2]))
+    low = high = f32x16(some[0]), f32x16(some[1]), f32x16(some[2])
     for v in range(first, last):
         if bits[v] != 0:
             x, y, z = _points_of(lifted, bits, v, some)
@@ -151,13 +151,8 @@ def put_beam(beam, points, bits, first, last, light, radius, within):
 
     # Find how wide the way from the lamp to the points is, as slopes of planes that touch the ball.
     half = np.float32(0.5)
-    along = _unit(
-        (
-            half * (least[0] + most[0]) - light[0],
-            half * (least[1] + most[1]) - light[1],
-            half * (least[2] + most[2]) - light[2],
-        )
-    )
+    x, y, z = half * (least[0] + most[0]), half * (least[1] + most[1]), half * (least[2] + most[2])
+    along = _unit((x - light[0], y - light[1], z - light[2]))
     right = _across(along)
     top, normal = cross(along, right), (up[0, i], up[1, i], up[2, i])
     near, floor = f32x16(HUGE), f32x16(HUGE)

@@ -28,6 +28,7 @@ from tracer.visibility.error_bounds import (
     spread_in_box,
     surely_hit,
 )
+from tracer.visibility.light_tree import halved
 
 MOST = 8192  # blockers of a scene, the largest triangles
 COLUMNS = 9  # of a triangle: a corner and two edges
@@ -66,24 +67,10 @@ def find_blockers(triangles: NDArray[np.float32], longest: float) -> Blockers:
     across = np.linalg.norm(np.cross(e1, e2), axis=1)
     numbers = np.argsort(-across, kind="stable")[:MOST]
     numbers = numbers[across[numbers] > 0.0]
-    numbers = numbers[_halved((corner + (e1 + e2) / 3.0)[numbers])]
+    numbers = numbers[halved((corner + (e1 + e2) / 3.0)[numbers], LANES, LANES)[0]]
     every = np.stack([corner, corner + e1, corner + e2], 1)[numbers]
     groups = _by_column(triangles[numbers, :COLUMNS], 0.0)
     return Blockers(groups, _around(every.min(1), every.max(1)), numbers.astype(np.int32), longest)
-
-
-def _halved(places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """An order of places (n, 3) in which sixteen that follow each other are close: halved again and again."""
-    order, waiting = np.arange(len(places)), [(0, len(places))]
-    while waiting:
-        first, last = waiting.pop()
-        if last - first > LANES:
-            here = order[first:last]
-            axis = int(np.argmax(np.ptp(places[here], axis=0)))
-            order[first:last] = here[np.argsort(places[here, axis], kind="stable")]
-            middle = first + LANES * max(1, (last - first) // (2 * LANES))
-            waiting += [(first, middle), (middle, last)]
-    return order
 
 
 def _by_column(rows: NDArray, nothing: float) -> NDArray[np.float32]:
@@ -118,8 +105,7 @@ def hull_of(boxes, i):
         np.float32(0.5 * (boxes[i, 5] - boxes[i, 2])),
     )
     return Hull(
-        (x, y, z),
-        (hx + _ROUNDED * (hx + abs(x)), hy + _ROUNDED * (hy + abs(y)), hz + _ROUNDED * (hz + abs(z))),
+        (x, y, z), (hx + _ROUNDED * (hx + abs(x)), hy + _ROUNDED * (hy + abs(y)), hz + _ROUNDED * (hz + abs(z)))
     )
 
 

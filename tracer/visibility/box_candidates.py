@@ -13,16 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import (
-    address_of,
-    any_lane,
-    bits_of,
-    f32x16,
-    gather_f32x16,
-    lanes_below,
-    load_columns,
-    load_i32x16,
-)
+from tracer.simd import address_of, any_lane, bits_of, f32x16, gather_f32x16, lanes_below, load_columns, load_i32x16
 from tracer.visibility.budget import TESTS
 from tracer.visibility.error_bounds import LANES, ROW, ZERO
 from tracer.visibility.light_space import FARTHEST, LIGHT_ROW, D, U, V, in_all_lanes, judge
@@ -33,18 +24,20 @@ MOST = 64  # primitives that a box keeps for its parts, at most
 
 
 class Light(NamedTuple):
-    """Light `number` at place (3,) float32, in a slot of `Occluders`; no ray from it is longer than `longest`."""
+    """Light `number` at place (3,) float32, in a slot of `Occluders`; no ray from it is longer than `longest`, and
+    planes of shafts are wrong by less than `rounded` in float32, in units of the scene."""
 
     number: int
     slot: int
     place: NDArray[np.float32]
     longest: float
+    rounded: float
 
 
-def light_to(number: int, slot: int, place: NDArray[np.float32], low: NDArray, high: NDArray) -> Light:
-    """A light whose rays end between low and high (3,)."""
-    longest = float(np.linalg.norm(np.maximum(np.abs(place - low), np.abs(place - high)))) * 1.001
-    return Light(number, slot, place, longest)
+def light_to(number: int, slot: int, place: NDArray[np.float32], around: NDArray[np.float64], largest: float) -> Light:
+    """A light whose rays end in a box `around` (2, 3) all that is static, whose largest coordinate is `largest`."""
+    longest = float(np.linalg.norm(np.abs(place - around).max(0))) * 1.001
+    return Light(number, slot, place, longest, 2e-6 * max(largest, float(np.abs(place).max())))
 
 
 class BoxQuestion(NamedTuple):
@@ -107,15 +100,14 @@ classifies(BoxQuestion, classify_for_box)
 
 
 @subkernel
-def come_between(o, light, scratch, middle, half, rounded, given, given_count, found, counts):
+def come_between(o, light, scratch, middle, half, given, given_count, found, counts):
     """Find what may come between a light and the cube around middle (3,) with half sides `half`: how many primitives,
     more than MOST for too many, or HIDDEN where one hides the whole cube.
 
     Their numbers go into found (MOST + 2 LANES,) int32.  They are among given (given_count,) int32, or anywhere where
-    that is more than MOST; o are `Occluders`; rounded is more, in units of the scene, than planes are wrong by in
-    float32."""
+    that is more than MOST; o are `Occluders`."""
     place = np.float64(light.place[0]), np.float64(light.place[1]), np.float64(light.place[2])
-    put_box(scratch.shaft, place, middle, half, rounded)
+    put_box(scratch.shaft, place, middle, half, light.rounded)
     center = np.float32(middle[0]), np.float32(middle[1]), np.float32(middle[2])
     question = BoxQuestion(o, light.slot, light, scratch.shaft, center, np.float32(half))
     if scratch.state[0] > 0:  # what has hidden others may hide this one

@@ -46,6 +46,12 @@ class Grid(NamedTuple):
         """The side of a cube."""
         return 1.0 / self.per_unit
 
+    @property
+    def around(self) -> NDArray[np.float64]:
+        """Lower and upper corner (2, 3) of all cubes together."""
+        low = np.array([self.x, self.y, self.z])
+        return np.stack([low, low + np.array([self.nx, self.ny, self.nz]) * self.side])
+
 
 def boxes_of(grid: Grid, numbers: NDArray[np.int64], room: float, times: int = 1) -> NDArray[np.float64]:
     """Boxes (k, 6), lower and upper corner, of cubes (k,), larger by `room` of a cube; or of blocks of so many cubes on

@@ -20,6 +20,7 @@ from tracer.visibility.blockers import between_middles, find_blockers, hull_of, 
 from tracer.visibility.budget import COUNTERS, STEPS, TESTS
 from tracer.visibility.error_bounds import LONGEST
 from tracer.visibility.light_tree import build_light_tree
+from tracer.visibility.static_geometry import bounds_around
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -146,7 +147,7 @@ class HiddenLights:
 
     def __init__(self, world: World) -> None:
         triangles = world.triangles_of(0).rows
-        self.bounds = _bounds(triangles)
+        self.bounds = bounds_around(triangles, np.empty((0, 6), np.float32))
         self.blockers = find_blockers(triangles, world.hit_padding / LONGEST * float(np.abs(self.bounds).max()))
         self.boxes = np.empty((0, 6), np.float32)
         self._proved, self._tree = self.boxes, build_light_tree(np.zeros((1, 6), np.float32))
@@ -198,13 +199,31 @@ class HiddenLights:
         return int(self.blockers.numbers[blocker]) if blocker >= 0 else -1
 
 
-def _bounds(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Lower and upper corner (2, 3) around triangles (t, 9), corner and two edges."""
-    if not len(triangles):
-        return np.zeros((2, 3))
-    first = triangles[:, :3].astype(np.float64)
-    every = np.concatenate([first, first + triangles[:, 3:6], first + triangles[:, 6:]])
-    return np.stack([every.min(0), every.max(0)])
+class LightLists:
+    """Lists of lights, numbered from 1 on in the order in which they are added."""
+
+    def __init__(self) -> None:
+        self._starts, self._lights = [np.zeros(1, np.int64)], [np.empty(0, np.int32)]
+        self._count = 0
+
+    def add(self, lists: list[NDArray[np.int32]]) -> NDArray[np.int64]:
+        """Add lists (k,); their numbers."""
+        if lists:
+            self._starts.append(self._starts[-1][-1] + np.cumsum([len(lights) for lights in lists]))
+            self._lights.append(np.concatenate(lists))
+        self._count += len(lists)
+        return self._count - len(lists) + 1 + np.arange(len(lists))
+
+    @property
+    def bytes(self) -> int:
+        """Memory that lists take, in bytes."""
+        return sum(a.nbytes for arrays in (self._starts, self._lights) for a in arrays)
+
+    def arrays(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """(starts (n + 1,), lights (m,)): list k has the lights from starts[k - 1] to starts[k] - 1."""
+        if len(self._starts) > 1:
+            self._starts, self._lights = [np.concatenate(self._starts)], [np.concatenate(self._lights)]
+        return self._starts[0], self._lights[0]
 
 
 def boxes_of_samples(lamps: Lamps) -> NDArray[np.float32]:

@@ -30,24 +30,31 @@ class LightTree(NamedTuple):
     order: NDArray[np.int32]
 
 
-def build_light_tree(boxes: NDArray[np.float32]) -> LightTree:
-    """The tree over lights whose samples lie in boxes (l, 6) float32, l > 0."""
-    centers, most = boxes[:, :3] + boxes[:, 3:], max(1, -(-len(boxes) // LEAVES))
-    order = np.arange(len(boxes), dtype=np.int32)
-    children, lights = [0], [(0, len(boxes))]
-    node = 0
-    while node < len(lights):
-        first, last = lights[node]
+def halved(places: NDArray, most: int, unit: int = 1) -> tuple[NDArray[np.int32], list[int], list[tuple[int, int]]]:
+    """Halve places (n, 3) along their longest side until no more than `most` are together, by whole `unit`s.
+
+    Returns (order (n,), children, spans): an order in which places that are together follow each other; and of each
+    node the first of two children, which come after it, 0 for none, and the first and the last + 1 of its places in the
+    order."""
+    order = np.arange(len(places), dtype=np.int32)
+    children, spans, node = [0], [(0, len(places))], 0
+    while node < len(spans):
+        first, last = spans[node]
         if last - first > most:
             here = order[first:last]
-            places = centers[here]
-            axis = int(np.argmax(np.ptp(places, axis=0)))
-            order[first:last] = here[np.argsort(places[:, axis], kind="stable")]
-            middle = (first + last) // 2
-            children[node] = len(lights)
+            axis = int(np.argmax(np.ptp(places[here], axis=0)))
+            order[first:last] = here[np.argsort(places[here, axis], kind="stable")]
+            middle = first + unit * max(1, (last - first) // (2 * unit))
+            children[node] = len(spans)
             children += [0, 0]
-            lights += [(first, middle), (middle, last)]
+            spans += [(first, middle), (middle, last)]
         node += 1
+    return order, children, spans
+
+
+def build_light_tree(boxes: NDArray[np.float32]) -> LightTree:
+    """The tree over lights whose samples lie in boxes (l, 6) float32, l > 0."""
+    order, children, lights = halved(boxes[:, :3] + boxes[:, 3:], max(1, -(-len(boxes) // LEAVES)))
     around = np.empty((len(lights), 6), np.float32)
     for node in range(len(lights) - 1, -1, -1):  # children come after their parents
         first, last = lights[node]

@@ -12,21 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.geometry.boxes import interval
 from tracer.geometry.memory import without_refcount
 from tracer.geometry.wide_tree.build import build_topology
 from tracer.geometry.wide_tree.topology import VACANT, WIDTH, Topology
 from tracer.runtime.kernels import inlined, kernel, subkernel
-from tracer.simd import (
-    address_of,
-    f32x16,
-    i32x16,
-    lane_numbers_x16,
-    local_memory,
-    maximum,
-    minimum,
-    select,
-    store,
-)
+from tracer.simd import address_of, f32x16, i32x16, lane_numbers_x16, local_memory, maximum, minimum, select, store
 from tracer.simd.records import I32, F32x2D, F32x3D, I32x2D
 from tracer.visibility.error_bounds import (
     BOX,
@@ -126,82 +117,44 @@ def error_radius(row, t, farthest, rounded):
 
 
 @subkernel
-def _find_error_radii(o, number, light, radius, farthest, rounded):
-    """Put how far from each triangle a ray from a lamp, a ball around light (3,), can report a hit into
-    o.error_radii[number]."""
-    error_radii, numbers = address_of(o.error_radii[number]), local_memory(64)
-    place = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
+def find_error_radii(rows, light, radius, farthest, rounded, radii):
+    """Put how far from each of rows (n, ROW) a ray from a lamp, a ball around light (3,), can report a hit into radii
+    (n rounded up to LANES,) float32 (`error_radius`)."""
+    numbers, place = local_memory(64), (np.float32(light[0]), np.float32(light[1]), np.float32(light[2]))
     farthest, rounded = np.float32(farthest), np.float32(rounded)
-    for first in range(0, len(o.rows), LANES):
-        which = minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(o.rows) - 1)))
-        store(numbers, which)
-        row = rows_at(o.rows, numbers)
+    for first in range(0, len(rows), LANES):
+        store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
+        row = rows_at(rows, numbers)
         t = seen_from(place, np.float32(radius), row)
-        store(error_radii + 4 * first, error_radius(row, t, farthest, rounded))
+        store(address_of(radii) + 4 * first, error_radius(row, t, farthest, rounded))
 
 
 @inlined
-def _put_box(box, child, low, high):
-    """Put a box into a node's boxes."""
-    for axis in range(3):
-        box[axis * WIDTH + child] = low[axis]
-        box[(3 + axis) * WIDTH + child] = high[axis]
-
-
-@inlined
-def _empty():
-    """A box around nothing."""
-    return (FAR, FAR, FAR), (-FAR, -FAR, -FAR)
-
-
-@inlined
-def _around(low, high, low2, high2):
-    """The box around two boxes."""
-    return (
-        (min(low[0], low2[0]), min(low[1], low2[1]), min(low[2], low2[2])),
-        (max(high[0], high2[0]), max(high[1], high2[1]), max(high[2], high2[2])),
-    )
-
-
-@inlined
-def _triangle_box(rows, i, more):
-    """The box around triangle i, `more` larger on each side."""
-    low0, low1, low2 = rows[i, 0], rows[i, 1], rows[i, 2]
-    more = np.float32(more)
-    return (
-        (
-            low0 + min(np.float32(0), min(rows[i, 3], rows[i, 6])) - more,
-            low1 + min(np.float32(0), min(rows[i, 4], rows[i, 7])) - more,
-            low2 + min(np.float32(0), min(rows[i, 5], rows[i, 8])) - more,
-        ),
-        (
-            low0 + max(np.float32(0), max(rows[i, 3], rows[i, 6])) + more,
-            low1 + max(np.float32(0), max(rows[i, 4], rows[i, 7])) + more,
-            low2 + max(np.float32(0), max(rows[i, 5], rows[i, 8])) + more,
-        ),
-    )
+def _enclose(box, child, axis, low, high):
+    """Let the box of a node's child reach from low to high along an axis, besides where it does already."""
+    at = axis * WIDTH + child
+    box[at], box[3 * WIDTH + at] = min(box[at], low), max(box[3 * WIDTH + at], high)
 
 
 @subkernel
-def _leaf_box(o, leaf, number, farthest):
-    """The box around a leaf's primitives for a light; their error radii are put side by side."""
-    low, high = _empty()
-    room = np.float32(REPORTED * farthest)
-    leaf_radii = o.leaf_radii[number, leaf]
+def _enclose_leaf(box, child, o, leaf, number, farthest):
+    """Put a leaf's primitives, as a light sees them, into the box of a node's child; their error radii are put side by
+    side."""
+    room, leaf_radii = np.float32(REPORTED * farthest), o.leaf_radii[number, leaf]
     for k in range(WIDTH):
         i = o.numbers[leaf, k]
         leaf_radii[k] = -FAR
-        if i >= o.first_quadric:
-            b = o.rows[i]
-            low, high = _around(low, high, (b[BOX], b[BOX + 1], b[BOX + 2]), (b[BOX + 3], b[BOX + 4], b[BOX + 5]))
-        elif i != NONE:
+        if i == NONE:
+            continue
+        if i < o.first_quadric:
             leaf_radii[k] = o.error_radii[number, i]
-            low2, high2 = _triangle_box(o.rows, i, leaf_radii[k])
-            b = o.rows[i]
-            low2 = max(low2[0], b[BOX] - room), max(low2[1], b[BOX + 1] - room), max(low2[2], b[BOX + 2] - room)
-            high2 = min(high2[0], b[BOX + 3] + room), min(high2[1], b[BOX + 4] + room), min(high2[2], b[BOX + 5] + room)
-            low, high = _around(low, high, low2, high2)
-    return low, high
+        row, more = o.rows[i], leaf_radii[k]
+        for axis in range(3):
+            low, high = row[BOX + axis], row[BOX + 3 + axis]
+            if i < o.first_quadric:
+                least, most = interval(o.rows, i, axis)
+                low, high = max(least - more, low - room), min(most + more, high + room)
+            _enclose(box, child, axis, low, high)
 
 
 @kernel
@@ -211,24 +164,19 @@ def enlarge_boxes(o, number, light, radius, farthest, largest):
     No ray from it is longer than `farthest`, and no coordinate larger than `largest`, in units of the scene."""
     o = without_refcount(o)
     boxes = o.boxes[number]
-    _find_error_radii(o, number, light, radius, farthest, ROUNDED * largest)
+    find_error_radii(o.rows, light, radius, farthest, ROUNDED * largest, o.error_radii[number])
     if radius == 0.0:  # rays test candidates of points alone
         put_light_space(o.rows, o.farthest, light, o.light_space[number])
+    boxes[:, : 3 * WIDTH], boxes[:, 3 * WIDTH :] = FAR, -FAR
     for node in range(len(o.children) - 1, -1, -1):  # children come after their parents
         for child in range(WIDTH):
             code = o.children[node, child]
-            low, high = _empty()
             if code >= 0:
-                for k in range(WIDTH):
-                    low, high = _around(
-                        low,
-                        high,
-                        (boxes[code, k], boxes[code, WIDTH + k], boxes[code, 2 * WIDTH + k]),
-                        (boxes[code, 3 * WIDTH + k], boxes[code, 4 * WIDTH + k], boxes[code, 5 * WIDTH + k]),
-                    )
+                for axis in range(3):
+                    for k in range(axis * WIDTH, (axis + 1) * WIDTH):
+                        _enclose(boxes[node], child, axis, boxes[code, k], boxes[code, 3 * WIDTH + k])
             elif code != VACANT:
-                low, high = _leaf_box(o, ~code, number, farthest)
-            _put_box(boxes[node], child, low, high)
+                _enclose_leaf(boxes[node], child, o, ~code, number, farthest)
 
 
 def blocks_of(

@@ -187,14 +187,7 @@ def put_box(shaft, light, center, half, rounded):
         shaft.box[3 + axis] = max(light[axis], center[axis] + half) + rounded
     for pair in range(3):
         i, j = (1, 2) if pair == 0 else ((2, 0) if pair == 1 else (0, 1))
-        li, lj = light[0], light[0]
-        ci, cj = center[0], center[0]
-        for axis in range(3):
-            if axis == i:
-                li, ci = light[axis], center[axis]
-            if axis == j:
-                lj, cj = light[axis], center[axis]
-        x, y = ci - li, cj - lj
+        x, y = center[i] - light[i], center[j] - light[j]
         if abs(x) <= half and abs(y) <= half:
             _put_upright(shaft.planes, 2 * pair, i, j, 0.0, 0.0, 1.0)
             _put_upright(shaft.planes, 2 * pair + 1, i, j, 0.0, 0.0, 1.0)
@@ -216,4 +209,4 @@ def put_box(shaft, light, center, half, rounded):
             size = math.sqrt(nx * nx + ny * ny)
             if size > 0.0:
                 nx, ny = nx / size, ny / size
-            _put_upright(shaft.planes, 2 * pair + side, i, j, nx, ny, nx * li + ny * lj + rounded)
+            _put_upright(shaft.planes, 2 * pair + side, i, j, nx, ny, nx * light[i] + ny * light[j] + rounded)

@@ -46,6 +46,12 @@ def put_rows(
         rows += (ROUNDED * np.abs(rows).max(1, initial=0.0, keepdims=True) + room) * outwards
 
 
+def bounds_around(triangles: NDArray[np.float32], boxes: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Lower and upper corner (2, 3) around triangles (t, 9), corner and edges, and boxes (q, 6); 0 around nothing."""
+    every = np.concatenate([triangle_boxes(triangles.astype(np.float64)), boxes])
+    return np.stack([every[:, :3].min(0), every[:, 3:].max(0)]) if len(every) else np.zeros((2, 3))
+
+
 class StaticGeometry:
     """Rows, trees and bounds of all static geometry.
 
@@ -81,17 +87,13 @@ class StaticGeometry:
         put_rows(self._world, index, outlines, self.rows[triangles], self.rows[quadrics])
         boxes, numbers = self.rows[quadrics, BOX:], np.r_[triangles, quadrics].astype(np.int32)
         self._shapes[index] = shape_of(self.rows[triangles, :CORNER_ERROR], boxes, numbers, self._threads)
-        self._bounds_of[index] = self._bounds(index)
+        self._bounds_of[index] = bounds_around(self.rows[triangles, :CORNER_ERROR], boxes)
 
     @property
     def bytes(self) -> int:
         """Memory that rows and trees take, in bytes."""
         o = self.occluders
         return sum(a.nbytes for a in (self.rows, o.boxes, o.blocks, o.error_radii, o.leaf_radii, o.light_space))
-
-    def beyond(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> float:
-        """How far a box around it, from low to high (3,), reaches beyond its bounds, at most."""
-        return float(np.linalg.norm(np.maximum(0.0, np.maximum(self.bounds[0] - low, high - self.bounds[1]))))
 
     def _rows_of(self, index: int) -> tuple[slice, slice]:
         """The rows of an object's triangles, and of its quadrics."""
@@ -138,13 +140,20 @@ class StaticGeometry:
 
         for_each_chunk(update, len(numbers), self._threads)
 
-    def _bounds(self, index: int) -> NDArray[np.float64]:
-        """Lower and upper corner (2, 3) of a box around an object."""
-        triangles, quadrics = self._rows_of(index)
-        corner, e1, e2 = (self.rows[triangles, k : k + 3].astype(np.float64) for k in (0, 3, 6))
-        boxes = self.rows[quadrics, BOX:].astype(np.float64)
-        every = np.concatenate([corner, corner + e1, corner + e2, boxes[:, :3], boxes[:, 3:]])
-        return np.stack([every.min(0), every.max(0)]) if len(every) else np.zeros((2, 3))
+    def update_points(self, numbers: list[int], lights: NDArray[np.float32], around: NDArray[np.float64]) -> None:
+        """The same for points, whose rays end in a box `around` (2, 3) all that is static.  What has no area is never
+        hit."""
+        beyond = np.maximum(0.0, np.maximum(self.bounds[0] - around[0], around[1] - self.bounds[1]))
+        self.update_lights(numbers, lights, np.zeros(len(lights), np.float32), float(np.linalg.norm(beyond)))
+        flat = self.flat()
+        for number in numbers:
+            self.occluders.light_space[number][flat] = NEVER_HIT
+
+    def flat(self) -> NDArray[np.bool_]:
+        """(n,) which primitives are triangles with an edge of no length, which nothing hits."""
+        flat = (self.rows[:, 3:6] == 0).all(1) | (self.rows[:, 6:9] == 0).all(1)
+        flat[self.first_quadric :] = False
+        return flat
 
     def _join(self) -> None:
         """Put the trees of all objects back to back."""
@@ -169,11 +178,3 @@ class StaticGeometry:
             self._light_space,
             farthest,
         )
-
-
-def without_area(geometry: StaticGeometry) -> NDArray[np.bool_]:
-    """(n,) which primitives are triangles with an edge of no length, which nothing hits."""
-    rows = geometry.rows
-    flat = (rows[:, 3:6] == 0).all(1) | (rows[:, 6:9] == 0).all(1)
-    flat[geometry.first_quadric :] = False
-    return flat

@@ -12,24 +12,8 @@ import numpy as np
 from tracer.culling.counters import TESTS
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import (
-    i32_at,
-    i32x16,
-    i64_at,
-    lanes_below,
-    load_f32x16,
-    load_i32,
-    load_three,
-    lowest_bit,
-    ones,
-    store,
-)
-from tracer.visibility.area_light_tests import (
-    MOST_SAMPLES,
-    ask_points,
-    ask_samples,
-    ask_triangles,
-)
+from tracer.simd import i32_at, i32x16, i64_at, lanes_below, load_f32x16, load_i32, load_three, lowest_bit, ones, store
+from tracer.visibility.area_light_tests import MOST_SAMPLES, ask_points, ask_samples, ask_triangles
 from tracer.visibility.beams import make_beam, passes_by, primitives_met, put_cone
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.prepared_triangles import PREPARED, prepare_in_tree, prepared_met
@@ -146,11 +130,12 @@ def _ask(triangle, end, lamp, live, begun, left, cost, scratch, counts):
         if begun & bit == 0:
             begun |= bit
             asked[lane] = 0
-            _begin_bits(scratch, lane, lamp.groups)
+            _put_bits(scratch.blocked, lane, lamp.groups, 0)
+            _put_bits(scratch.unsure, lane, lamp.groups, 0)
         asked[lane] += 1
         if asked[lane] > worth_asking(lamp, cost):
             left |= bit
-            _leave_bits(scratch, lane, lamp.groups)
+            _put_bits(scratch.unsure, lane, lamp.groups, -1)  # but for those that are known to be hidden
         elif _ask_samples(triangle, lane, can & bit != 0, lamp, lane, scratch):
             live &= ~bit
     return live, begun, left
@@ -214,10 +199,11 @@ def _ask_point(o, lamp, end, lane, found, cost, scratch, counts):
             k = lowest_bit(unsure)
             unsure &= unsure - 1
             if asked == 0:
-                _begin_bits(scratch, lane, lamp.groups)
+                _put_bits(scratch.blocked, lane, lamp.groups, 0)
+                _put_bits(scratch.unsure, lane, lamp.groups, 0)
             asked += 1
             if asked > worth_asking(lamp, cost):
-                _leave_bits(scratch, lane, lamp.groups)
+                _put_bits(scratch.unsure, lane, lamp.groups, -1)  # but for those that are known to be hidden
                 return PARTLY
             if _ask_samples(made + 4 * k, k, (can >> k) & 1 != 0, lamp, lane, scratch):
                 return HIDDEN
@@ -232,18 +218,10 @@ def worth_asking(lamp, cost):
 
 
 @inlined
-def _begin_bits(scratch, lane, groups):
-    """No sample is known to be hidden from the point in a lane, and none is unsure."""
+def _put_bits(bits, lane, groups, value):
+    """Put a value, 0 for none or -1 for all of a lamp's samples, into bits at an address, of the point in a lane."""
     for at in range(4 * GROUPS * lane, 4 * GROUPS * lane + 4 * groups, 64):
-        store(scratch.blocked + at, i32x16(0))
-        store(scratch.unsure + at, i32x16(0))
-
-
-@inlined
-def _leave_bits(scratch, lane, groups):
-    """All samples are unsure that are not known to be hidden from the point in a lane."""
-    for at in range(4 * GROUPS * lane, 4 * GROUPS * lane + 4 * groups, 64):
-        store(scratch.unsure + at, i32x16(-1))
+        store(bits + at, i32x16(value))
 
 
 @inlined

@@ -19,7 +19,7 @@ from tracer.culling.counters import RAYS, TESTS
 from tracer.culling.shadow_testing import LIGHT_MARGIN, shadow_rays
 from tracer.culling.stages import looks_at, vectors
 from tracer.geometry.queries import STATIC_GEOMETRY, any_hits_by
-from tracer.neighbours.area_lights.hidden_samples import ALL, BITS, NOTHING, SOME, keep_bits
+from tracer.neighbours.area_lights.lamp_answers import ALL, BITS, NOTHING, SOME, keep_bits
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     bits_of,
@@ -97,13 +97,9 @@ def find_hidden(recent, points, batch, hidden, number, looked, count, counts):
     place, first = recent.places[number], np.int64(recent.first[number])
     light, many = (place[0], place[1], place[2]), np.int64(recent.first[number + 1]) - first
     room = _Room(
-        local_memory(SAMPLES),
-        local_memory(NUMBERS),
-        local_memory(PREPARED),
-        local_memory(KEPT),
-        local_memory(BITS),
+        local_memory(SAMPLES), local_memory(NUMBERS), local_memory(PREPARED), local_memory(KEPT), local_memory(BITS),
         local_memory(STATE),
-    )
+    )  # fmt: skip
     groups = put_samples(recent.samples, first, many, light, room.samples)
     lamp, state = Lamp(number, light, recent.radii[number], groups), i64_at(room.state)
     state[KNOWN], state[NEXT], state[IN_VAIN] = 0, 0, 0

@@ -79,7 +79,7 @@ def _open(certified, points, found, number, count, room, stride):
         _keep(room + 4 * n, stride, few, which, first + np.int32(1), remaining, name, end)
         _prefetch_lanes(light_space, 4 * LIGHT_ROW, room + NAME * stride + 4 * n)
         n += ones(bits_of(few))
-    _fill_up(room + 4 * n, stride)
+    store(room + NAME * stride + 4 * n, i32x16(0))  # the lanes beyond the last name a primitive that there is
     return n
 
 
@@ -91,12 +91,6 @@ def _keep(at, stride, mask, which, following, remaining, name, end):
     store(at + REMAINING * stride, pack(remaining, mask))
     store(at + NAME * stride, pack(name, mask))
     store_three(at + END * stride, stride, pack_three(end, mask))
-
-
-@inlined
-def _fill_up(at, stride):
-    """Let the lanes beyond the last question name a primitive that there is."""
-    store(at + NAME * stride, i32x16(0))
 
 
 @subkernel
@@ -139,7 +133,7 @@ def _ask_next(names, light_space, light, count, room, stride, live, lit):
             _keep(room + 4 * n, stride, more, which, following, remaining, name, (x, y, z))
             _prefetch_lanes(light_space, 4 * LIGHT_ROW, room + NAME * stride + 4 * n)
             n += ones(bits_of(more))
-    _fill_up(room + 4 * n, stride)
+    store(room + NAME * stride + 4 * n, i32x16(0))  # the lanes beyond the last name a primitive that there is
     return n, known
 
 

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from tracer.culling.modes import FULLY_RENDERED
 from tracer.geometry.memory import without_refcount
-from tracer.neighbours.certified.cell_prism import put_cell
 from tracer.neighbours.certified.cells import (
     CANDIDATES,
     FULL,
@@ -24,6 +23,7 @@ from tracer.neighbours.certified.cells import (
     set_state,
     state_of,
 )
+from tracer.neighbours.certified.tasks import put_cell_of
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.visibility.shaft import box_outside, put_light
 
@@ -76,10 +76,7 @@ def invalidate_certificates(cells, o, lights, scale, gone, boxes, near, s):
             # Drop what something new may come between.
             if not drop and state != FULL and state_of(near[owner >> 1], light) == UNTRIED:
                 if not tried:
-                    u, v, size = cells.place[cell, 0], cells.place[cell, 1], cells.place[cell, 2]
-                    side, at = 1.0 - 2.0 * (owner & 1), (np.float64(u), np.float64(v), np.float64(size))
-                    placed = put_cell(s.shaft, o.rows, owner >> 1, side, at[0], at[1], at[2], scale)
-                    tried = True
+                    placed, tried = put_cell_of(cells, o, cell, scale, s), True
                 drop = not placed or _meets_any(s, boxes[light], lights[light])
             if drop:
                 set_state(cells, cell, light, UNTRIED)

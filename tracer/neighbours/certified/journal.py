@@ -6,7 +6,7 @@ at the end of their arrays, where the next frame writes over them.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,57 +15,39 @@ from tracer.neighbours.certified.cells import LEAF, ROOTS, Cells
 from tracer.neighbours.certified.tasks import KEPT, Tasks
 
 
-class _Rows(NamedTuple):
-    """What rows of cells held, by number."""
-
-    number: NDArray[np.int64]
-    words: NDArray[np.unsignedinteger]
-    child: NDArray[np.int32]
-    requests: NDArray[np.int32]
-    lists: NDArray[np.int32]
-
-
-class _Owners(NamedTuple):
-    """What was known of owners, by number."""
-
-    number: NDArray[np.int64]
-    waiting: NDArray[np.int32]
-    root: NDArray[np.int32]
-    rooted: NDArray[np.int32]
-
-
 class Journal:
     """What changes from now on: `note_owners` and `note_cells` come before each change."""
 
     def __init__(self, cells: Cells) -> None:
         self._used, self._named = int(cells.used[0]), int(cells.named[0])
-        self._rows: list[_Rows] = []
-        self._owners: list[_Owners] = []
+        self._before: list[tuple[str, Any, NDArray]] = []  # what was in some places of an array of cells, by its name
 
     def note_owners(self, cells: Cells, owners: NDArray[np.int64]) -> None:
         """The roots of these owners (k,) may be made, and points are counted that request them."""
-        roots = cells.receivers.view(np.int32)[owners >> 1, ROOTS + (owners & 1)]
-        self._owners.append(_Owners(owners, cells.waiting[owners], roots, cells.rooted[owners >> 1]))
+        sides = owners >> 1, ROOTS + (owners & 1)
+        self._note(cells, owners, "waiting")
+        self._note(cells, sides[0], "rooted")
+        self._note(cells, sides, "receivers")
 
     def note_cells(self, cells: Cells, tasks: Tasks) -> None:
         """The results of tasks change the tasks' cells and, where they certify, all below these."""
         certified = (tasks.state != KEPT).any(axis=1)
         number = np.concatenate([tasks.cell, _below(cells, tasks.cell[certified])]).astype(np.int64)
-        number = number[number < self._used]
-        self._rows.append(
-            _Rows(number, cells.words[number], cells.child[number], cells.requests[number], cells.lists[number])
-        )
+        self._note(cells, number[number < self._used], "words", "child", "requests", "lists")
+
+    def _note(self, cells: Cells, places: Any, *names: str) -> None:
+        self._before += [(name, places, _whole(cells, name)[places]) for name in names]
 
     def undo(self, cells: Cells) -> None:
         """Put back what was noted, the newest first, and forget cells that are new."""
-        for rows in reversed(self._rows):
-            cells.words[rows.number], cells.child[rows.number] = rows.words, rows.child
-            cells.requests[rows.number], cells.lists[rows.number] = rows.requests, rows.lists
-        for owners in reversed(self._owners):
-            sides = owners.number >> 1, ROOTS + (owners.number & 1)
-            cells.waiting[owners.number], cells.rooted[sides[0]] = owners.waiting, owners.rooted
-            cells.receivers.view(np.int32)[sides] = owners.root
+        for name, places, values in reversed(self._before):
+            _whole(cells, name)[places] = values
         cells.used[0], cells.named[0] = self._used, self._named
+
+
+def _whole(cells: Cells, name: str) -> NDArray:
+    """An array of cells, that of receivers as whole numbers, which is what roots are."""
+    return getattr(cells, name).view(np.int32) if name == "receivers" else getattr(cells, name)
 
 
 def _below(cells: Cells, roots: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -214,10 +214,3 @@ def cull_by_certificates(certified, points, found, light, number, count, asks, b
         counts[TESTS] += tests
         for v in range(vectors(count)):  # of some of these, too many are named, or one is in doubt
             batch.candidates[v] &= ~np.int64(batch.live[v])
-
-
-@subkernel
-def record_cells(wave, found, place, cell):
-    """Write the cells of primary hits into the picture; place (n,) says where each pixel of the tile is."""
-    for i in range(wave.size):
-        cell[place[wave.pixel[i]]] = found.unit[i]

@@ -9,19 +9,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer.culling.modes import MAX_CULLED_LIGHTS
 from tracer.culling.stages import vectors
-from tracer.neighbours.certified.cells import (
-    CANDIDATES,
-    CORNER,
-    LEAF,
-    NORMAL,
-    RECEIVER,
-    ROOTS,
-    UNTRIED,
-)
+from tracer.neighbours.certified.cells import CANDIDATES, CORNER, LEAF, NORMAL, RECEIVER, ROOTS, UNTRIED
 from tracer.neighbours.certified.lookup import NOWHERE, affine
 from tracer.neighbours.certified.quadtree import descend
 from tracer.runtime.kernels import inlined, subkernel
@@ -43,6 +34,7 @@ from tracer.simd import (
     select,
     store,
 )
+from tracer.simd.records import F32x2D, I32x2D, I64x2D
 
 ZERO, HALF, ONE = np.float32(0), np.float32(0.5), np.float32(1)
 ROOM = 4096  # requests that a tile can make
@@ -50,7 +42,7 @@ FACING = 64 * MAX_CULLED_LIGHTS  # bytes: sixteen numbers for each light
 
 
 class Requests(NamedTuple):
-    """Points that request certificates, of one tile, or with a leading axis of many.
+    """Points that request certificates, with a leading axis of tiles, or in kernels those of one.
 
     Attributes:
         key: (ROOM,) int32, the cell or, where there is none yet, -1 less the owner.
@@ -58,10 +50,10 @@ class Requests(NamedTuple):
         of: (3,) int64, how many there are, one in how many is kept, and how many were made.
     """
 
-    key: NDArray[np.int32]
-    u: NDArray[np.float32]
-    v: NDArray[np.float32]
-    of: NDArray[np.int64]
+    key: I32x2D
+    u: F32x2D
+    v: F32x2D
+    of: I64x2D
 
 
 def make_requests(tiles: int) -> Requests:
@@ -74,7 +66,7 @@ def make_requests(tiles: int) -> Requests:
 
 @inlined
 def requests_of(rows, tile):
-    """The requests of one tile, of those of all (`RequestRows`)."""
+    """The requests of one tile, of those of all."""
     return Requests(rows.key[tile], rows.u[tile], rows.v[tile], rows.of[tile])
 
 

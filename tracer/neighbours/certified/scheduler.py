@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from tracer.neighbours.certified.cost_model import CostModel
 from tracer.neighbours.certified.gather_requests import RequestPoints
+from tracer.neighbours.certified.journal import Journal
 from tracer.neighbours.certified.requests import Requests, make_requests
 from tracer.neighbours.certified.store import BATCH, CertificateStore
 from tracer.runtime.parallel import for_each_chunk
@@ -73,10 +74,8 @@ class CertificateScheduler:
         It ends with `keep` or `cancel`; one that does not has kept its certificates once the next begins."""
         if self._store.restarts != self._restarts:
             self._begin()
-        self._store.close_journal()
         self._keeps = budget.seconds < np.inf
-        if not self._keeps:
-            self._store.begin_journal()
+        self._store.journal = None if self._keeps else Journal(self._store.cells)
         self._requests = make_requests(tiles)
         return self._requests
 
@@ -94,7 +93,7 @@ class CertificateScheduler:
         """The frame is whole: what it certified stays, and what its rays requested comes next.
 
         Call this before cells get other numbers (`CertificateStore.keep_within`)."""
-        self._store.close_journal()
+        self._store.journal = None
         self._pending, self._numbering, self._requests = [requests], self._store.numbering, None
 
     def finish(self, made: int, due: int) -> None:

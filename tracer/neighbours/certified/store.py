@@ -21,6 +21,7 @@ from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.rays import RAY_OFFSET
+from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.certified.cell_prism import SceneScale
 from tracer.neighbours.certified.cells import (
     ALONG_U,
@@ -48,7 +49,7 @@ from tracer.neighbours.certified.journal import Journal
 from tracer.neighbours.certified.quadtree import part_of
 from tracer.neighbours.certified.requests import Requests
 from tracer.neighbours.certified.tasks import KEPT, commit, make_tasks, run_tasks, tasks_in
-from tracer.neighbours.certified.view import CertificateView, LampsView, RequestRows
+from tracer.neighbours.certified.view import CertificateView, LampsView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.occluders import FAR, Occluders
@@ -57,7 +58,6 @@ from tracer.visibility.static_geometry import StaticGeometry
 if TYPE_CHECKING:
     from tracer.geometry.world import World
 
-STATES = ("none", "full", "lit", "candidates")
 BATCH = 4096  # tasks of one call of `certify`, at most
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 FEW_TILES = 4  # of a picture: with so many every vector of points makes requests, with twice as many every other
@@ -79,6 +79,7 @@ class CertificateStore:
         cost_model: what certificates are worth.
         numbering: changes whenever cells get other numbers, so that requests of before mean nothing.
         restarts: how often everything was dropped, as the scene had outgrown it.
+        journal: lets what is certified be undone, until something moves; None where that stays.
     """
 
     def __init__(self, world: World, lights: int, threads: int, cost_model: CostModel) -> None:
@@ -103,7 +104,7 @@ class CertificateStore:
         self._seen = np.zeros(len(self.cells.waiting), np.int32)  # the frame that last saw each root
         self._frame = 0
         self._slots = np.zeros(0, np.int32)  # in which requests are gathered
-        self._journal: Journal | None = None
+        self.journal: Journal | None = None
         self.numbering += 1
         self.restarts += 1
         self._rescale()
@@ -152,7 +153,7 @@ class CertificateStore:
 
         A point light is certified once it has not moved for a frame.  What is known of a lamp's rays serves one frame,
         so that lamps may move.  From now on work is done by so many threads."""
-        self.threads, self._journal = threads, None
+        self.threads, self.journal = threads, None
         self._scratch += [make_scratch() for _ in range(len(self._scratch), threads)]
         if self._world.extent > self._static.allowed:  # boxes may have grown beyond those that are known
             self._start()
@@ -212,19 +213,11 @@ class CertificateStore:
 
     # --- what is added ----------------------------------------------------------------------------------
 
-    def begin_journal(self) -> None:
-        """From now on, what is certified can be undone; until something moves, or `close_journal`."""
-        self._journal = Journal(self.cells)
-
-    def close_journal(self) -> None:
-        """What has been certified stays."""
-        self._journal = None
-
     def undo(self) -> None:
         """Be as when the journal began."""
-        if self._journal is not None:
-            self._journal.undo(self.cells)
-            self._journal = None
+        if self.journal is not None:
+            self.journal.undo(self.cells)
+            self.journal = None
 
     def gather(
         self, key: NDArray[np.int32], u: NDArray[np.float32], v: NDArray[np.float32], patience: int
@@ -237,8 +230,8 @@ class CertificateStore:
         slots = len(self.cells.words) + len(self.cells.waiting)
         if len(self._slots) < slots:
             self._slots = np.zeros(slots, np.int32)
-        if self._journal is not None:
-            self._journal.note_owners(self.cells, (-1 - key[key < 0]).astype(np.int64))
+        if self.journal is not None:
+            self.journal.note_owners(self.cells, (-1 - key[key < 0]).astype(np.int64))
         known = self.cells, self.occluders, self.lights, self.certified
         return gather_tasks(*known, key, u, v, patience, self._slots, points), points
 
@@ -268,8 +261,8 @@ class CertificateStore:
         for_each_chunk(work, -(-len(todo) // size), self.threads, cancel)
         named = 1 + tasks.amount[(tasks.state != KEPT) & (tasks.amount != TOO_MANY)].astype(np.int64) % SETTLED
         self.cells = with_room(self.cells, 4 * len(todo), int(named.sum()))
-        if self._journal is not None:
-            self._journal.note_cells(self.cells, tasks)
+        if self.journal is not None:
+            self.journal.note_cells(self.cells, tasks)
         following = np.empty((4 * len(todo), 3), np.int32)
         return following[: commit(self.cells, self.occluders, self.scale, tasks, following)]
 
@@ -292,7 +285,7 @@ class CertificateStore:
         target = with_room(target, 0, int(self.cells.named[0]))
         target = target._replace(receivers=self.cells.receivers, rooted=self.cells.rooted)
         copy_kept(self.cells, kept, target)
-        self.cells, self._journal = target, None
+        self.cells, self.journal = target, None
         self.numbering += 1
 
     # --- what is known ----------------------------------------------------------------------------------
@@ -320,7 +313,7 @@ class CertificateStore:
             costly_rays=model.costly_rays,
             stride=stride,
             first_vector=self._frame % stride,
-            requests=RequestRows(*requests),
+            requests=requests,
             cell=cell,
         )
 

@@ -34,6 +34,7 @@ from tracer.neighbours.certified.certify import MOST, certify
 from tracer.neighbours.certified.gather_requests import facing_lights
 from tracer.neighbours.certified.quadtree import part_of, place_of_part
 from tracer.runtime.kernels import inlined, kernel, subkernel
+from tracer.simd import i64_at, local_memory
 from tracer.visibility.error_bounds import dot, row_of
 from tracer.visibility.shaft import put_light
 
@@ -97,32 +98,21 @@ def _part(cells, cell, u, v):
 @subkernel
 def _sort_points(cells, cell, points, first, last, parts):
     """Sort requests first to last - 1 by the parts of a cell, in place; where they begin, into parts (5,)."""
+    following = i64_at(local_memory(32))  # where the next request of each part goes
     for k in range(5):
         parts[k] = 0
     for i in range(first, last):
+        points.spare[0, i], points.spare[1, i] = points.u[i], points.v[i]
         parts[1 + _part(cells, cell, points.u[i], points.v[i])] += 1
     parts[0] = first
     for k in range(4):
+        following[k] = parts[k]
         parts[k + 1] += parts[k]
-    n0, n1, n2, n3 = parts[0], parts[1], parts[2], parts[3]
-    for i in range(first, last):
-        points.spare[0, i], points.spare[1, i] = points.u[i], points.v[i]
     for i in range(first, last):
         u, v = points.spare[0, i], points.spare[1, i]
         k = _part(cells, cell, u, v)
-        if k == 0:
-            at = n0
-            n0 += 1
-        elif k == 1:
-            at = n1
-            n1 += 1
-        elif k == 2:
-            at = n2
-            n2 += 1
-        else:
-            at = n3
-            n3 += 1
-        points.u[at], points.v[at] = u, v
+        points.u[following[k]], points.v[following[k]] = u, v
+        following[k] += 1
 
 
 @inlined
@@ -137,7 +127,7 @@ def _can_split(cells, o, cell, scale):
 
 
 @subkernel
-def _put_cell(cells, o, cell, scale, s):
+def put_cell_of(cells, o, cell, scale, s):
     """Put the worker's shaft to a cell; False where that cannot be certified."""
     owner, place = np.int64(cells.owner[cell]), cells.place[cell]
     u, v, size = np.float64(place[0]), np.float64(place[1]), np.float64(place[2])
@@ -182,7 +172,7 @@ def _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience
         # Certify the cell for this light.
         made += 1
         if not put:
-            put, placed = True, _put_cell(cells, o, cell, scale, s)
+            put, placed = True, put_cell_of(cells, o, cell, scale, s)
         state, amount = np.int64(CANDIDATES), np.int64(TOO_MANY)
         if placed:
             place = np.float64(lights[light, 0]), np.float64(lights[light, 1]), np.float64(lights[light, 2])
@@ -202,7 +192,7 @@ def _run_task(cells, o, lights, stationary, scale, task, tasks, points, patience
             leaf
             and cells.requests[cell] + last - first >= patience
             and _can_split(cells, o, cell, scale)
-            and (put or _put_cell(cells, o, cell, scale, s))
+            and (put or put_cell_of(cells, o, cell, scale, s))
         ):
             _sort_points(cells, cell, points, first, last, tasks.parts[task])
 

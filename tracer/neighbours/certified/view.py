@@ -5,18 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tracer.culling.modes import Words
-from tracer.simd.records import F32, I32, Bytes, F32x2D, I32x2D, I64x2D, reading
+from tracer.neighbours.certified.requests import Requests
+from tracer.simd.records import F32, I32, Bytes, F32x2D, I32x2D, reading
 from tracer.visibility.occluders import Occluders
-
-
-class RequestRows(NamedTuple):
-    """Where requests go: `tracer.neighbours.certified.requests.Requests`, a row for each tile, or without rows where
-    none are made."""
-
-    key: I32x2D
-    u: F32x2D
-    v: F32x2D
-    of: I64x2D
 
 
 class LampsView(NamedTuple):
@@ -52,7 +43,7 @@ class CertificateView(NamedTuple):
         max_asked, first_asking: candidates that a ray tests at most, and from which bounce on (`CostModel`).
         costly_rays: whether rays cost so much that every look-up pays (`CostModel`).
         stride, first_vector: one in `stride` vectors of points makes requests, from that one on.
-        requests: of all tiles.
+        requests: a row for each tile, or without rows where none are made.
         cell: (pixels,) int32, gets the cell at each primary hit; empty where nobody wants to know.
     """
 
@@ -71,7 +62,7 @@ class CertificateView(NamedTuple):
     costly_rays: bool
     stride: int
     first_vector: int
-    requests: RequestRows
+    requests: Requests
     cell: I32
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS
+from tracer.culling.counters import STEPS
 from tracer.culling.stages import vectors
-from tracer.geometry.boxes import segments_miss_box
+from tracer.neighbours.cells_of_space import answer_in_cells, want
 from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, cells_at
 from tracer.runtime.kernels import subkernel
 from tracer.simd import (
@@ -20,7 +20,6 @@ from tracer.simd import (
     load_three,
     local_memory,
     lowest_bit,
-    mark,
     mask16,
     ones,
     select,
@@ -36,13 +35,7 @@ def find_cells(environments, points, count, cells):
     for v in range(vectors(count)):
         x, y, z = load_three(points.lifted, v)
         store(numbers + 64 * v, cells_at(environments, x, y, z))
-        rest, before = lanes_below(count, v), -1
-        while rest != 0:
-            cell = i32_at(numbers)[16 * v + lowest_bit(rest)]
-            rest &= rest - 1
-            if cell != before and environments.open[cell]:
-                mark(address_of(environments.wanted) + cell)
-            before = cell
+        want(environments.wanted, environments.open, 1, numbers + 64 * v, lanes_below(count, v))
 
 
 @subkernel
@@ -65,12 +58,12 @@ def select_lights(environments, count, cells):
             for light in range(held):
                 if environments.codes[cell * held + light] != HIDDEN:
                     looks[light, word] |= bit
-            first = environments.first[cell]
-            if first < 0:
+            which = environments.of[cell]
+            if which == 0:
                 for light in range(held, lights):
                     looks[light, word] |= bit
             else:
-                for k in range(first, environments.last[cell]):
+                for k in range(environments.starts[which - 1], environments.starts[which]):
                     looks[environments.lights[k], word] |= bit
 
 
@@ -102,13 +95,4 @@ def answer(environments, points, batch, light, place, count, cells, counts):
             many = np.int64(environments.names[at])
             blocked, unsure = ask_list(rows, names, many, place, end, way, here, seen, masks, by_ray, counts)
             full, null, asked = full | blocked, null | (here & ~(blocked | unsure)), asked | (here & ~unsure)
-        for k in range(len(environments.resting)):
-            box = environments.resting[k]
-            if null != 0:
-                null &= bits_of(segments_miss_box(place, way, (box[0], box[1], box[2]), (box[3], box[4], box[5])))
-        counts[CULLED] += ones(full & ~asked)
-        counts[DYNAMIC_ONLY] += ones(null & ~asked)
-        counts[CANDIDATES_ONLY] += ones((full | null) & asked)
-        batch.candidates[v] |= (full | null) & asked
-        batch.live[v] = live & ~(full | null)
-        batch.lit[v] |= null
+        answer_in_cells(batch, v, full, null, asked, environments.resting, place, end, counts)

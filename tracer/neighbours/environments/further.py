@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.neighbours.environments.octree import OUTSIDE, boxes_of
-from tracer.neighbours.environments.tree import CellTree, lengthened, room_for
+from tracer.neighbours.environments.octree import CellTree, boxes_of
 from tracer.scene.lights import Lamps
 from tracer.visibility.budget import CERTIFICATES
-from tracer.visibility.hidden_lights import HiddenLights, boxes_of_samples
+from tracer.visibility.hidden_lights import HiddenLights, LightLists, boxes_of_samples
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -24,8 +23,8 @@ COARSE, HARDLY = 6, 0.8  # levels that are divided in any case; further ones whe
 
 
 class FurtherLights:
-    """Lists of those of the lights with `numbers` (k,) that may shine into each cell of a tree: `lights` from `first`
-    (cells,), -1 where nothing is known, to `last`; the first `used` numbers of `lights` are in use."""
+    """Lists of those of the lights with `numbers` (k,) that may shine into each cell of a tree: `of` (cells,) int32 are
+    their numbers in `lists`, 0 where nothing is known."""
 
     def __init__(self, numbers: NDArray[np.int64], world: World) -> None:
         self.numbers = numbers
@@ -34,19 +33,14 @@ class FurtherLights:
 
     def begin(self, cells: int) -> None:
         """Nothing is known of any cell; there is room for so many."""
-        self.first, self.last = np.full(cells, -1, np.int32), np.full(cells, -1, np.int32)
+        self.of, self.lists = np.zeros(cells, np.int32), LightLists()
         self._leaves: dict[int, NDArray[np.int32]] = {}
-        self.lights, self.used = np.zeros(1024, np.int32), 0
-
-    def grow(self, cells: int) -> None:
-        """Let there be room for so many cells."""
-        if cells > len(self.first):
-            self.first, self.last = (lengthened(array, cells, -1) for array in (self.first, self.last))
 
     @property
     def bytes(self) -> int:
         """Memory that the lists take, in bytes."""
-        return 4 * self.used + sum(leaves.nbytes for leaves in {id(a): a for a in self._leaves.values()}.values())
+        leaves = {id(a): a.nbytes for a in self._leaves.values()}
+        return self.lists.arrays()[1].nbytes + sum(leaves.values())
 
     def update(self, lamps: Lamps, known: NDArray[np.bool_]) -> bool:
         """Lights are where these lamps have them now: say of which (lights,) anything is `known`.  One that has moved
@@ -57,11 +51,19 @@ class FurtherLights:
         known[self.numbers] = ~self._hidden.moved
         return anew
 
-    def hides(self, cell: int, light: int) -> bool:
-        """Whether one of these lights, which has not moved, is known to be hidden from a cell."""
-        if cell <= OUTSIDE or self.first[cell] < 0:
-            return False
-        return light not in self.lights[self.first[cell] : self.last[cell]]
+    def hides(self, cells: NDArray[np.int64], light: int) -> NDArray[np.bool_]:
+        """From which cells (n,) one of these lights, which has not moved, is known to be hidden."""
+        starts, lights = self.lists.arrays()
+        hidden = np.ones(len(starts), np.bool_)
+        hidden[0] = False
+        hidden[np.searchsorted(starts, np.flatnonzero(lights == light), side="right")] = False
+        return hidden[self.of[cells]]
+
+    def counted(self, cells: NDArray[np.int64], which: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """How many of the lights `which` (lights,) are in the lists of cells (n,): none where nothing is known."""
+        starts, lights = self.lists.arrays()
+        before, of = np.concatenate([[0], np.cumsum(which[lights])])[starts], self.of[cells]
+        return before[of] - before[np.maximum(of - 1, 0)]
 
     def settle(
         self,
@@ -73,27 +75,21 @@ class FurtherLights:
     ) -> NDArray[np.bool_]:
         """Find which of the lights may shine into cells (n,); which cells are worth dividing."""
         assert self._hidden is not None, "some lights have no codes"
-        those = cells[self.first[cells] < 0]
-        root = np.zeros(1, np.int32)
+        those = cells[self.of[cells] == 0]
+        root, new = np.zeros(1, np.int32), []
         above = [self._leaves.get(int(parent), root) for parent in tree.parent[those]]
-        left_with = self._hidden.descend(boxes_of(tree.frame, tree.cells[those]), above, threads, counts, cancel)
+        left_with = self._hidden.descend(boxes_of(tree.grid, tree.cells[those]), above, threads, counts, cancel)
         counts[0, CERTIFICATES] += len(those)
         for cell, found in zip(those.tolist(), left_with, strict=True):
-            self._keep(cell, int(tree.parent[cell]), found)
-        parents = tree.parent[cells]
-        left, before = (self.last[of] - self.first[of] for of in (cells, parents))
-        gains = (left < HARDLY * before) | (tree.cells[cells, 3] > tree.frame.levels - COARSE)
-        return (left > FEW_LIGHTS) & gains & (tree.cells[cells, 3] > tree.frame.levels - SHARE)
-
-    def _keep(self, cell: int, parent: int, found: NDArray[np.int32]) -> None:
-        """Keep the lights in these leaves of the tree of lights as those of a cell."""
-        assert self._hidden is not None, "some lights have no codes"
-        if parent in self._leaves and len(found) == len(self._leaves[parent]):  # they share all
-            self.first[cell], self.last[cell] = self.first[parent], self.last[parent]
-            self._leaves[cell] = self._leaves[parent]
-            return
-        numbers = self.numbers[self._hidden.lights_below(found)].astype(np.int32)
-        self.lights = room_for(self.lights, self.used + len(numbers))
-        self.lights[self.used : self.used + len(numbers)] = numbers
-        self.first[cell], self.used = self.used, self.used + len(numbers)
-        self.last[cell], self._leaves[cell] = self.used, found
+            around = self._leaves.get(int(tree.parent[cell]))
+            if around is not None and len(found) == len(around):  # they share all
+                self.of[cell], self._leaves[cell] = self.of[tree.parent[cell]], around
+            else:
+                self._leaves[cell] = found
+                new.append(cell)
+        below = (self._hidden.lights_below(self._leaves[cell]) for cell in new)
+        self.of[new] = self.lists.add([self.numbers[lights].astype(np.int32) for lights in below])
+        sizes = np.diff(self.lists.arrays()[0], prepend=0)
+        left, before = sizes[self.of[cells]], sizes[self.of[tree.parent[cells]]]
+        gains = (left < HARDLY * before) | (tree.cells[cells, 3] > tree.levels - COARSE)
+        return (left > FEW_LIGHTS) & gains & (tree.cells[cells, 3] > tree.levels - SHARE)

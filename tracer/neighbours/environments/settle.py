@@ -16,12 +16,12 @@ from tracer.visibility.error_bounds import LANES
 
 
 @kernel
-def settle(o, light, boxes, above, names, rounded, codes, found, counts):
+def settle(o, light, boxes, above, names, codes, found, counts):
     """Find the codes (n,) int32 of cells in boxes (n, 6) for a `Light`; above (n,) are those of the cells around them.
 
     Where blockers are left, the code is their number, and they are in found (n, MOST) int32: more than MOST are not
-    named and make UNKNOWN.  names (m,) are those of the cells around.  o are `Occluders`; rounded is more, in units of
-    the scene, than planes are wrong by in float32.  counts (COUNTERS,) int64 are added to."""
+    named and make UNKNOWN.  names (m,) are those of the cells around.  o are `Occluders`.  counts (COUNTERS,) int64
+    are added to."""
     o, scratch, met = without_refcount(o), make_scratch(), np.zeros(MOST + 2 * LANES, np.int32)
     for i in range(len(boxes)):
         code = above[i]
@@ -35,7 +35,7 @@ def settle(o, light, boxes, above, names, rounded, codes, found, counts):
         middle = boxes[i, 0] + half, boxes[i, 1] + half, boxes[i, 2] + half
         forget_occluders(scratch)
         counts[CERTIFICATES] += 1
-        count = come_between(o, light, scratch, middle, half, rounded, names[start:], given, met, counts)
+        count = come_between(o, light, scratch, middle, half, names[start:], given, met, counts)
         codes[i] = UNKNOWN if count > MOST else (HIDDEN if count < 0 else count)
         for k in range(max(0, min(count, MOST))):
             if count <= MOST:

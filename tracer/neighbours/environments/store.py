@@ -18,16 +18,26 @@ from numpy.typing import NDArray
 from tracer.culling.modes import FULL_SHADOW, FULLY_RENDERED, MAX_CULLED_LIGHTS, NON_SHADOW, word_type
 from tracer.culling.rest import Resting, boxes_at_rest
 from tracer.neighbours.environments.further import FurtherLights
-from tracer.neighbours.environments.octree import HIDDEN, LIT, OUTSIDE, ROOM, UNKNOWN, EnvironmentView, boxes_of
+from tracer.neighbours.environments.octree import (
+    HIDDEN,
+    LIT,
+    OUTSIDE,
+    ROOM,
+    UNKNOWN,
+    CellTree,
+    EnvironmentView,
+    boxes_of,
+    lengthened,
+    room_for,
+)
 from tracer.neighbours.environments.settle import settle
-from tracer.neighbours.environments.tree import CellTree, lengthened, room_for
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.box_candidates import MOST, Light, light_to
-from tracer.visibility.budget import CERTIFICATES, COUNTERS, STEPS, TESTS, Counts
+from tracer.visibility.budget import COUNTERS, Counts
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.grid import DIGITS
-from tracer.visibility.static_geometry import NEVER_HIT, StaticGeometry, without_area
+from tracer.visibility.static_geometry import StaticGeometry
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -69,14 +79,13 @@ class EnvironmentStore:
         self.geometry = StaticGeometry(world, self.held, threads, True)
         #: The cells.
         self.tree = CellTree(self.geometry.bounds)
-        self._flat = without_area(self.geometry)
         # The lights that are not held, or are lamps.
         further = np.arange(count) >= self.held
         further[: self.held] |= ~single[: self.held]
         #: What is known of the others.
         self.further = FurtherLights(np.flatnonzero(further), world)
         #: The level of the smallest cells, as the tree counts them.
-        self.finest = max(0, self.tree.frame.levels - coarse) if coarse else 0
+        self.finest = max(0, self.tree.levels - coarse) if coarse else 0
         self.places = np.full((count, 3), np.nan, np.float32)  # for which anything is known
         self._resting = np.empty((0, 6), np.float32)
         self._known = np.zeros(count, np.bool_)
@@ -101,16 +110,15 @@ class EnvironmentStore:
         codes = 4 * self.held * self.tree.count
         return self.tree.bytes + codes + 4 * self._named + self.further.bytes
 
-    def keep_within(self) -> None:
-        """Forget all cells where they take more than half of the memory."""
-        if self._cell_bytes > self._memory / 2:
-            self._begin_cells()
-
     # Following what moves.
 
     def update(self, lamps: Lamps, resting: Resting) -> None:
-        """Lights are where these lamps have them now, and this rests."""
-        far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.frame.per_unit > ROOM / 4
+        """Lights are where these lamps have them now, and this rests.
+
+        All cells are forgotten where they take more than half of the memory."""
+        if self._cell_bytes > self._memory / 2:
+            self._begin_cells()
+        far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.tree.grid.per_unit > ROOM / 4
         moved = (lamps.places != self.places).any(1)
         held = moved[: self.held].copy()
         held[np.setdiff1d(self.further.numbers, np.arange(self.held, len(far)))] = False
@@ -121,14 +129,7 @@ class EnvironmentStore:
             self.places[numbers] = lamps.places[numbers]
             self._usable[numbers] = ~far[numbers]
             self._forget(numbers)
-            self.geometry.update_lights(
-                numbers.tolist(),
-                lamps.places,
-                np.zeros(len(lamps.places), np.float32),
-                self.geometry.beyond(*self._edges()),
-            )
-            for light in numbers:
-                self.geometry.occluders.light_space[light][self._flat] = NEVER_HIT
+            self.geometry.update_points(numbers.tolist(), lamps.places, self.tree.grid.around)
         if self.further.update(lamps, self._known):
             self._begin_cells()
 
@@ -138,15 +139,9 @@ class EnvironmentStore:
         self.tree.leaves_open(int(sum(1 << int(light) for light in lights)))
         self._anew = True
 
-    def _edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The corners (3,) of all cells together."""
-        frame = self.tree.frame
-        low = np.array([frame.x, frame.y, frame.z])
-        return low, low + 2.0**frame.levels * frame.side
-
     def light(self, number: int) -> Light:
         """A held light as `settle` knows it."""
-        return light_to(number, number, self.places[number].copy(), *self._edges())
+        return light_to(number, number, self.places[number].copy(), self.tree.grid.around, self.geometry.largest)
 
     # Settling cells.
 
@@ -161,11 +156,7 @@ class EnvironmentStore:
         return np.flatnonzero(tree.wanted[: tree.count] & tree.open[: tree.count])
 
     def work(
-        self,
-        want: Callable[[], None],
-        seconds: float,
-        cancel: Callable[[], bool] | None = None,
-        by: By | None = None,
+        self, want: Callable[[], None], seconds: float, cancel: Callable[[], bool] | None = None, by: By | None = None
     ) -> Counts:
         """Settle the cells that are wanted, and those within them that `want` wants then, until the time is up.
 
@@ -184,20 +175,18 @@ class EnvironmentStore:
                 self._settle(cells, method, counts, cancel)
                 if self._clock() >= until:
                     break
-        steps, tests, made = (int(counts[:, k].sum()) for k in (STEPS, TESTS, CERTIFICATES))
-        return Counts(steps, tests, made)
+        return Counts(*counts.sum(0).tolist())
 
     def _prove(self, counts: NDArray[np.int64], cancel: Callable[[], bool] | None) -> Settle:
         def proved(
             cells: NDArray[np.int64], light: Light, above: NDArray[np.int32]
         ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
             codes, found = np.empty(len(cells), np.int32), np.zeros((len(cells), MOST), np.int32)
-            boxes = boxes_of(self.tree.frame, self.tree.cells[cells])
-            rounded = 2e-6 * max(self.geometry.largest, float(np.abs(light.place).max()))
+            boxes = boxes_of(self.tree.grid, self.tree.cells[cells])
 
             def work(chunk: int, worker: int) -> None:
                 those = slice(chunk * CHUNK, (chunk + 1) * CHUNK)
-                given = boxes[those], above[those], self.names, rounded, codes[those], found[those]
+                given = boxes[those], above[those], self.names, codes[those], found[those]
                 settle(self.geometry.occluders, light, *given, counts[worker])
 
             for_each_chunk(work, -(-len(cells) // CHUNK), self._threads, cancel)
@@ -206,11 +195,7 @@ class EnvironmentStore:
         return proved
 
     def _settle(
-        self,
-        cells: NDArray[np.int64],
-        method: Settle,
-        counts: NDArray[np.int64],
-        cancel: Callable[[], bool] | None,
+        self, cells: NDArray[np.int64], method: Settle, counts: NDArray[np.int64], cancel: Callable[[], bool] | None
     ) -> None:
         """Settle cells (n,), and divide those that are worth it."""
         tree, worth = self.tree, np.zeros(len(cells), np.bool_)
@@ -232,7 +217,7 @@ class EnvironmentStore:
             tree.divide(cells[worth & (tree.cells[cells, 3] > self.finest)])
             if tree.room > len(self.codes):
                 self.codes = lengthened(self.codes, tree.room, UNKNOWN)
-                self.further.grow(tree.room)
+                self.further.of = lengthened(self.further.of, tree.room, 0)
 
     def _keep(self, codes: NDArray[np.int32], found: NDArray[np.int32]) -> NDArray[np.int32]:
         """Add lists of blockers to the names; codes (n,) are how many of found (n, MOST) each has, then where its list
@@ -253,40 +238,21 @@ class EnvironmentStore:
     def view(self, looks: NDArray[np.int64], cell: NDArray[np.int32]) -> EnvironmentView:
         """What kernels are given now; `looks` has rows where lights are to be selected, and cell (pixels,) int32 gets
         the cells of primary hits, if it is not empty."""
+        tree, further, space = self.tree, self.further, self.geometry.occluders.light_space
         return EnvironmentView(
-            self.tree.frame,
-            self.tree.child,
-            self.tree.open,
-            self.tree.wanted,
-            self.codes.reshape(-1),
-            self.held,
-            self.names,
-            self.further.first,
-            self.further.last,
-            self.further.lights,
-            self.geometry.occluders.light_space,
-            self._known.copy(),
-            self._resting,
-            self._by_ray,
-            looks,
-            cell,
-        )
+            tree.grid, tree.levels, tree.child, tree.open, tree.wanted, self.codes.reshape(-1), self.held, self.names,
+            further.of, *further.lists.arrays(), space, self._known.copy(), self._resting, self._by_ray, looks, cell,
+        )  # fmt: skip
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:
         """What is known of cells, of any shape, as words like those of `tracer.neighbours.certified.cells`."""
-        word, many, further = word_type(len(self.places)), self.tree.count, self.further
-        words = np.full(many, FULLY_RENDERED, word)
-        # Lists of the lights that are not held, some of them shared, and to which each number belongs.
-        first, last = further.first[:many].astype(np.int64), further.last[:many]
-        _, one, which = np.unique(2 * first + (last > first), return_index=True, return_inverse=True)
-        owner = np.repeat(np.arange(len(one)), np.maximum(last[one] - first[one], 0))
+        word, every = word_type(len(self.places)), np.arange(self.tree.count)
+        words = np.full(len(every), FULLY_RENDERED, word)
         for light in range(min(len(self.places), MAX_CULLED_LIGHTS)):
-            if light in further.numbers:
-                full = (first[one] >= 0) & self._known[light]
-                full[owner[further.lights[: len(owner)] == light]] = False
-                state = np.where(full[which], FULL_SHADOW, 0)
+            if light in self.further.numbers:
+                state = np.where(self.further.hides(every, light) & self._known[light], FULL_SHADOW, 0)
             elif light < self.held:
-                code = self.codes[:many, light]
+                code = self.codes[every, light]
                 state = np.select([code == HIDDEN, code == LIT, code > LIT], [FULL_SHADOW, NON_SHADOW, CANDIDATES], 0)
             else:
                 continue
@@ -301,16 +267,9 @@ class EnvironmentStore:
         known, held = self._known, self.held
         asked = ((self.codes[one] != HIDDEN) | ~known[:held]).sum(1)
         if len(known) > held:
-            first, last = (
-                np.maximum(ends[one], 0).astype(np.int64) for ends in (self.further.first, self.further.last)
-            )
-            left = last - first
-            if len(self.further.numbers) < len(known) - held or not known.all() or self.further.numbers[0] < held:
-                # Lights that are held are counted, and so are all that have moved.
-                lists = self.further.lights[: self.further.used]
-                before = np.concatenate([[0], np.cumsum((lists >= held) & known[lists])])
-                left = before[last] - before[first] + int((~known[held:]).sum())
-            asked += np.where(self.further.first[one] < 0, len(known) - held, left)
+            # Lights that are held are counted, and so are all that have moved.
+            left = self.further.counted(one, known & (np.arange(len(known)) >= held)) + int((~known[held:]).sum())
+            asked += np.where(self.further.of[one] == 0, len(known) - held, left)
         asked[one == OUTSIDE] = len(known)
         found = asked.astype(np.int32)[which].reshape(cells.shape)
         return np.where(cells < 0, np.int32(-1), found)
@@ -325,12 +284,12 @@ class EnvironmentStore:
             f"There is memory for the blockers of {self.held} lights; of {lacking} more only what hides them is known."
         )
 
-    def state_at(self, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+    def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
         """What is known of a light in the cell of a point (3,), and its blockers there: "full", "lit", "candidates" or
         "none", the words that certificates have."""
         cell = self.tree.leaf_at(point)
         if light in self.further.numbers:
-            return ("full" if self._known[light] and self.further.hides(cell, light) else "none"), ()
+            return ("full" if self._known[light] and self.further.hides(np.array([cell]), light)[0] else "none"), ()
         code = int(self.codes[cell, light]) if light < self.held else UNKNOWN
         if code > LIT:
             return "candidates", tuple(self.names[code + 1 : code + 1 + self.names[code]].tolist())

@@ -7,11 +7,12 @@ read once.  A ray of which a candidate is not certain is traced, and asks no mor
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tracer.culling.counters import TESTS
 from tracer.culling.stages import vectors
-from tracer.neighbours.lightbuffer.rays import BY_CANDIDATES, LIT_RAY, SHADOWED_RAY
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -33,7 +34,38 @@ from tracer.simd import (
     store,
     store_three,
 )
+from tracer.simd.records import IntRow, Memory, Row3, row_count, rows_of
 from tracer.visibility.light_space import LIGHT_ROW, load_row, verdicts
+
+# Answers, as bits.
+OPEN_RAY, LIT_RAY, SHADOWED_RAY, SETTLED_RAY, BY_CANDIDATES = 0, 1, 2, 4, 8
+
+
+class BufferRays(NamedTuple):
+    """The live rays of a wave, packed, and those of them that test candidates, packed again.
+
+    Attributes:
+        end: where each ends, (3, n).
+        code: the record of its cell; at last a byte for each answer.
+        answer: what is known of it.
+        ray, asked: the number of each that tests candidates among the former, and where it ends.
+        next, left: where its next candidate stands in the lists, and how many are left to be tested.
+        name: the row of that candidate.
+    """
+
+    memory: Memory
+    end: Row3
+    code: IntRow
+    answer: IntRow
+    ray: IntRow
+    asked: Row3
+    next: IntRow
+    left: IntRow
+    name: IntRow
+
+
+buffer_rays_in = rows_of(BufferRays)
+RAY_ROWS = row_count(BufferRays)
 
 
 @inlined

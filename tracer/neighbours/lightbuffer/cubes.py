@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.world import World
-from tracer.neighbours.lightbuffer.cube import FACES
+from tracer.neighbours.lightbuffer.cube import COUNT, FACES, FIRST, ITEM, RECORD, SPAN, WIDTH_BITS
 from tracer.neighbours.lightbuffer.divide import (
     CAME_TO,
     FOUND,
@@ -22,8 +22,7 @@ from tracer.neighbours.lightbuffer.divide import (
     RECORDS_USED,
     divide_face,
 )
-from tracer.neighbours.lightbuffer.items import find_error_radii, put_items, put_rows_of_light
-from tracer.neighbours.lightbuffer.shapes import COUNT, FIRST, ITEM, RECORD, SPAN, WIDTH_BITS
+from tracer.neighbours.lightbuffer.items import put_error_radii, put_items, put_rows_of_light
 from tracer.runtime.parallel import for_each_chunk
 from tracer.visibility.error_bounds import BOX, LANES, LONGEST, ROW, SureHitLength
 from tracer.visibility.light_space import LIGHT_ROW
@@ -76,7 +75,7 @@ def items_of(world: World, objects: list[int], outlines: Outlines) -> Items:
 class Cube:
     """What a light sees.
 
-    cells (6, side, side) int32 name records (r, RECORD) float32 (`shapes`), whose candidates lists (l,)
+    cells (6, side, side) int32 name records (r, RECORD) float32 (`cube`), whose candidates lists (l,)
     int32 name by rows (k, LIGHT_ROW) float32 prepared for the light, of the primitives of these numbers (k,) int32.
     `every` (n,) int32 are the numbers of all primitives, which records name that have no candidates.
     `reach`: how long rays may be that ask, and `sure`: how long to be sure of a hit on what covers their cell."""
@@ -153,7 +152,7 @@ class CubeMaker:
 
         def find_radii(k: int, worker: int) -> None:
             rounded = ROUNDED * (self._items.largest + float(np.abs(lights[k]).max()))
-            find_error_radii(rows, lights[k], reaches[k], rounded, radii[k])
+            put_error_radii(rows, lights[k], reaches[k], rounded, radii[k])
 
         def divide(chunk: int, worker: int) -> None:
             k, face = divmod(chunk, FACES)
@@ -213,13 +212,5 @@ class CubeMaker:
         rows[:] = self._items.rows[which]
         if len(which):
             put_rows_of_light(rows, SureHitLength(len(which), self._items.sure, 0.0), light, light_space)
-        return Cube(
-            cells,
-            records,
-            mark[lists],
-            light_space,
-            self._items.numbers[which],
-            self._items.numbers,
-            reach,
-            self._items.sure,
-        )
+        numbers = self._items.numbers
+        return Cube(cells, records, mark[lists], light_space, numbers[which], numbers, reach, self._items.sure)

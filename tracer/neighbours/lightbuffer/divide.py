@@ -22,8 +22,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.memory import without_refcount
-from tracer.neighbours.lightbuffer.cube import SEAM, axes_of
-from tracer.neighbours.lightbuffer.shapes import (
+from tracer.neighbours.lightbuffer.cube import (
     BLOCKED,
     COUNT,
     COVERS,
@@ -43,11 +42,13 @@ from tracer.neighbours.lightbuffer.shapes import (
     NUMBER,
     OF_U,
     OF_V,
+    SEAM,
     SPAN,
     WIDTH_BITS,
     U,
     V,
     W,
+    axes_of,
 )
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
@@ -145,13 +146,22 @@ def _filter(items, spans, arena, begin, end, x, y, half, found):
     return n, cover
 
 
+@inlined
+def _far_plane(items, cover):
+    keep = items[cover, KEEP]
+    return (
+        items[cover, NEAR] * keep,
+        items[cover, NEAR + 1] * keep,
+        items[cover, NEAR + 2] * keep - items[cover, LESS],
+    )
+
+
 @subkernel
 def _drop_hidden(items, arena, first, count, cover, x, y, half, found):
     """Drop those of `count` items, from `first` on in the arena, that lie beyond the far plane of one that covers the
     square; how many remain."""
     names, stride = address_of(arena), 4 * found.shape[1]
-    keep, less = items[cover, KEEP], items[cover, LESS]
-    fx, fy, fz = items[cover, NEAR] * keep, items[cover, NEAR + 1] * keep, items[cover, NEAR + 2] * keep - less
+    fx, fy, fz = _far_plane(items, cover)
     size = abs(fx) + abs(fy) + abs(fz)
     least = fx * x + fy * y + fz - half * (abs(fx) + abs(fy)) - ROUNDED * size
     n = np.int64(0)
@@ -201,16 +211,6 @@ def _near_plane(found, count, x, y, half):
     if middle + raised < highest:
         return nx, ny, nz + raised
     return ZERO, ZERO, highest
-
-
-@inlined
-def _far_plane(items, cover):
-    keep = items[cover, KEEP]
-    return (
-        items[cover, NEAR] * keep,
-        items[cover, NEAR + 1] * keep,
-        items[cover, NEAR + 2] * keep - items[cover, LESS],
-    )
 
 
 @inlined

@@ -21,11 +21,11 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.geometry.memory import without_refcount
-from tracer.neighbours.lightbuffer.cube import axes_of
-from tracer.neighbours.lightbuffer.shapes import (
+from tracer.neighbours.lightbuffer.cube import (
     COVERS,
     HIGH_X,
     HIGH_Y,
+    HUGE,
     KEEP,
     LESS,
     LOW_X,
@@ -39,6 +39,9 @@ from tracer.neighbours.lightbuffer.shapes import (
     U,
     V,
     W,
+    axes_of,
+    box_on_face,
+    widened,
 )
 from tracer.runtime.kernels import inlined, kernel, subkernel
 from tracer.simd import (
@@ -71,30 +74,23 @@ from tracer.visibility.error_bounds import (
     factors,
     length,
     rows_at,
-    seen_from,
     unsure_of_t,
 )
 from tracer.visibility.light_space import put_light_space
-from tracer.visibility.occluders import error_radius
+from tracer.visibility.occluders import find_error_radii
 
 DIAGONAL = 1.733  # of a cube whose edge is 2: half of it
 OWN = 32 * EPSILON  # of all coefficients, by which a plane in float32 may be wrong
 LEAST = 1e-6  # no point is nearer to the light, along the axis of its face, for planes to be asked about it
 TINY = float(SMALL) / LEAST  # what volumes must exceed at z = 1
-HUGE = 1e30
 _WIDE, _ROUNDING = 2 * REPORTED, 1e-6
 
 
 @kernel
-def find_error_radii(rows, light, farthest, rounded, radii):
+def put_error_radii(rows, light, farthest, rounded, radii):
     """How far from each of rows (n, ROW) rays from light (3,), no longer than `farthest`, report hits, into radii
     (n rounded up to LANES,) float32."""
-    numbers, place = local_memory(64), (light[0], light[1], light[2])
-    for first in range(0, len(rows), LANES):
-        store(numbers, minimum(lane_numbers_x16() + np.int32(first), i32x16(np.int32(len(rows) - 1))))
-        row = rows_at(rows, numbers)
-        t = seen_from(place, ZERO, row)
-        store(address_of(radii) + 4 * first, error_radius(row, t, np.float32(farthest), np.float32(rounded)))
+    find_error_radii(rows, light, ZERO, farthest, rounded, radii)
 
 
 @kernel
@@ -140,14 +136,8 @@ def _put(row, first, v, factor):
     row[first], row[first + 1], row[first + 2] = v[0] * factor, v[1] * factor, v[2] * factor
 
 
-@inlined
-def _widened(low, high, least, most, near, far):
-    """The range of x / z, joined by that of x between least and most where z is between near > 0 and far."""
-    return min(low, least / (far if least > 0.0 else near)), max(high, most / (near if most > 0.0 else far))
-
-
 @subkernel
-def _put_span(span, row, away, radius, s, e1, e2, axes):
+def _put_span(span, row, away, radius, light, s, e1, e2, axes):
     """Where on the face, and from what depth on, may hits on a primitive be?  s leads from its corner to the light; all
     in the order of the face's axes."""
     left, right, low, high, nearest = HUGE, -HUGE, HUGE, -HUGE, HUGE
@@ -161,27 +151,17 @@ def _put_span(span, row, away, radius, s, e1, e2, axes):
         if z - radius <= 0.0:
             left, right, low, high = -HUGE, HUGE, -HUGE, HUGE
         else:
-            left, right = _widened(left, right, x - radius, x + radius, z - radius, z + radius)
-            low, high = _widened(low, high, y - radius, y + radius, z - radius, z + radius)
+            left, right = widened(left, right, x - radius, x + radius, z - radius, z + radius)
+            low, high = widened(low, high, y - radius, y + radius, z - radius, z + radius)
     # The box, seen from the light.
     room = _WIDE * away
     for axis in range(3):
         room += _ROUNDING * (row[BOX + 3 + axis] - row[BOX + axis])
-    light = s[3], s[4], s[5]
-    ax, ay, az, sign = axes
-    x0, x1 = row[BOX + ax] - light[ax] - room, row[BOX + 3 + ax] - light[ax] + room
-    y0, y1 = row[BOX + ay] - light[ay] - room, row[BOX + 3 + ay] - light[ay] + room
-    z0, z1 = row[BOX + az] - light[az] - room, row[BOX + 3 + az] - light[az] + room
-    if sign < 0.0:
-        z0, z1 = -z1, -z0
+    x0, x1, y0, y1, z0, z1 = box_on_face(row[BOX:], light, room, axes)
     if z1 <= 0.0:
         return False
-    nearest = max(nearest, z0)
-    if z0 > 0.0:
-        box = _widened(HUGE, -HUGE, x0, x1, z0, z1)
-        left, right = max(left, box[0]), min(right, box[1])
-        box = _widened(HUGE, -HUGE, y0, y1, z0, z1)
-        low, high = max(low, box[0]), min(high, box[1])
+    nearest, left, right = max(nearest, z0), max(left, x0), min(right, x1)
+    low, high = max(low, y0), min(high, y1)
     span[LOW_X], span[HIGH_X] = left - 1e-6 * abs(left), right + 1e-6 * abs(right)
     span[LOW_Y], span[HIGH_Y] = low - 1e-6 * abs(low), high + 1e-6 * abs(high)
     span[NEAREST] = min(NEVER, 1.000001 / nearest) if nearest > 0.0 else NEVER
@@ -246,7 +226,7 @@ def put_items(rows, radii, light, face, sure, farthest, numbers, items, spans):
         second = np.float64(row[6]), np.float64(row[7]), np.float64(row[8])
         s, e1, e2 = _turned(way, axes), _turned(first, axes), _turned(second, axes)
         radius = np.float64(radii[i])
-        if not _put_span(span, row, length(s), radius, (s[0], s[1], s[2], l0, l1, l2), e1, e2, axes):
+        if not _put_span(span, row, length(s), radius, (l0, l1, l2), s, e1, e2, axes):
             continue
         # Turned axes are a mirror of the world or none: the cross products bear it, as signs are taken of T.
         _put_functions(item, span, row, sure, farthest, s, e1, e2)

@@ -19,11 +19,16 @@ import numpy as np
 
 from tracer.culling.counters import CANDIDATES_ONLY, CULLED, DYNAMIC_ONLY, STEPS
 from tracer.culling.stages import vectors
-from tracer.neighbours.lightbuffer.candidates import ask_candidates
-from tracer.neighbours.lightbuffer.cube import cells_of
+from tracer.neighbours.lightbuffer.candidates import (
+    BY_CANDIDATES,
+    LIT_RAY,
+    OPEN_RAY,
+    SETTLED_RAY,
+    SHADOWED_RAY,
+    ask_candidates,
+)
+from tracer.neighbours.lightbuffer.cube import COUNT, FIRST, RECORD, WIDTH_BITS, cells_of
 from tracer.neighbours.lightbuffer.items import LEAST
-from tracer.neighbours.lightbuffer.rays import BY_CANDIDATES, LIT_RAY, OPEN_RAY, SETTLED_RAY, SHADOWED_RAY
-from tracer.neighbours.lightbuffer.shapes import COUNT, FIRST, RECORD, WIDTH_BITS
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -59,7 +64,7 @@ from tracer.simd.records import F32x2D, I64x2D
 CELLS, RECORDS, LISTS, ROWS, SIDE = range(5)
 STATIC, RESTING, DEPTHS, MOVING, DEPTHS_SIDE, KNOWN = 0, 5, 10, 11, 12, 13
 COLUMNS = 14
-ZERO, ONE = np.float32(0), np.float32(1)
+ONE = np.float32(1)
 
 
 class LightBuffers(NamedTuple):

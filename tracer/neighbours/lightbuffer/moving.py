@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.geometry.memory import without_refcount
-from tracer.neighbours.lightbuffer.cube import FACES, SEAM, axes_of
+from tracer.neighbours.lightbuffer.cube import FACES, SEAM, axes_of, box_on_face
 from tracer.runtime.kernels import kernel
 
 SIDE = 64  # cells
@@ -29,26 +29,13 @@ def _put_boxes(boxes, light, side, depths):
             size = max(size, abs(box[axis]), abs(box[axis + 3]), abs(light[axis]))
         room = WIDER * size
         for face in range(FACES):
-            ax, ay, az, sign = axes_of(face)
-            z0, z1 = box[az] - light[az] - room, box[az + 3] - light[az] + room
-            if sign < 0.0:
-                z0, z1 = -z1, -z0
-            if z1 <= 0.0:
+            left, right, low, high, z0, z1 = box_on_face(box, light, room, axes_of(face))
+            if z1 <= 0.0 or left > 1.0 + SEAM or right < -1.0 - SEAM or low > 1.0 + SEAM or high < -1.0 - SEAM:
                 continue
-            first, last = (0, 0), (side - 1, side - 1)
+            first, last, half = (0, 0), (side - 1, side - 1), 0.5 * side
             if z0 > 0.0:
-                x0, x1 = box[ax] - light[ax] - room, box[ax + 3] - light[ax] + room
-                y0, y1 = box[ay] - light[ay] - room, box[ay + 3] - light[ay] + room
-                left, right = x0 / (z1 if x0 > 0.0 else z0), x1 / (z0 if x1 > 0.0 else z1)
-                low, high = y0 / (z1 if y0 > 0.0 else z0), y1 / (z0 if y1 > 0.0 else z1)
-                if left > 1.0 + SEAM or right < -1.0 - SEAM or low > 1.0 + SEAM or high < -1.0 - SEAM:
-                    continue
-                half = 0.5 * side
                 first = max(0, int((left - SEAM + 1.0) * half)), max(0, int((low - SEAM + 1.0) * half))
-                last = (
-                    min(side - 1, int((right + SEAM + 1.0) * half)),
-                    min(side - 1, int((high + SEAM + 1.0) * half)),
-                )
+                last = (min(side - 1, int((right + SEAM + 1.0) * half)), min(side - 1, int((high + SEAM + 1.0) * half)))
             nearest = np.float32(max(z0, 0.0) * 0.99999)
             for row in range(first[1], last[1] + 1):
                 for column in range(first[0], last[0] + 1):

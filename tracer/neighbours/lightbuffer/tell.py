@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.neighbours.lightbuffer.cube import BLOCKED, COUNT, FIRST, LIT, NOTHING, WIDTH_BITS
 from tracer.neighbours.lightbuffer.cubes import Cube
-from tracer.neighbours.lightbuffer.shapes import BLOCKED, COUNT, FIRST, LIT, NOTHING, WIDTH_BITS
 
 
 class Said(Enum):
@@ -63,16 +63,6 @@ def tell(cube: Cube, light: NDArray[np.float32], point: NDArray[np.float32]) -> 
     if float(record[LIT : LIT + 3] @ way) < 1.0:
         return Told(Said.BEFORE)
     return Told(Said.CANDIDATES if count else Said.UNKNOWN, names)
-
-
-def listed(cube: Cube, face: int, row: int, column: int) -> tuple[int, ...]:
-    """The primitives in the list of a cell, by number; or only the one that covers all of it."""
-    number = int(cube.cells[face, row, column]) >> WIDTH_BITS
-    if number == NOTHING:
-        return ()
-    first, count = (int(x) for x in cube.records.view(np.int32)[number, [FIRST, COUNT]])
-    names = tuple(int(cube.numbers[row]) for row in cube.lists[first : first + count])
-    return names or ((int(cube.every[first]),) if first >= 0 else ())
 
 
 def list_lengths(cube: Cube) -> NDArray[np.int32]:

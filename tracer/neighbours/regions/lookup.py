@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracer.culling.stages import vectors
+from tracer.neighbours.cells_of_space import want
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
     address_of,
@@ -101,24 +102,14 @@ def _leave_out(boxes, points, count, looks):
 
 
 @subkernel
-def want_around(regions, x, y, z, room, there):
+def want_around(regions, point, room, there):
     """Want the regions in which points lie that are not known yet, and those that their rays may end in besides, no
     further away than `room` along each axis."""
     numbers = local_memory(64)
     for corner in range(8):
-        at = (
-            x + (room if corner & 1 else -room),
-            y + (room if corner & 2 else -room),
-            z + (room if corner & 4 else -room),
-        )
-        number = cubes_at(regions.grid, at[0], at[1], at[2], NOWHERE)
+        x = point[0] + (room if corner & 1 else -room)
+        y = point[1] + (room if corner & 2 else -room)
+        z = point[2] + (room if corner & 4 else -room)
+        number = cubes_at(regions.grid, x, y, z, NOWHERE)
         store(numbers, number)
-        rest = bits_of(there & (number > np.int32(NOWHERE)))
-        before = -1
-        while rest != 0:
-            lane = lowest_bit(rest)
-            rest &= rest - 1
-            which = i32_at(numbers)[lane]
-            if which != before and regions.certified[which] == 0:
-                mark(address_of(regions.wanted) + which)
-            before = which
+        want(regions.wanted, regions.certified, 0, numbers, bits_of(there & (number > np.int32(NOWHERE))))

@@ -1,4 +1,5 @@
-"""The regions of a scene and the lights that each is left with, as far as rays have ended there."""
+"""The regions of a scene, cubes of which few are ever looked at, and the lights that each is left with, as far as rays
+have ended there."""
 
 from __future__ import annotations
 
@@ -9,16 +10,18 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.neighbours.regions.grid import blocks_around, make_grid, region_boxes
+from tracer.geometry.boxes import OUTWARDS
 from tracer.scene.lights import Lamps
 from tracer.simd.records import I32, I64, Bytes, F32x2D
 from tracer.visibility.budget import COUNTERS, STEPS, TESTS, Budget, Counts
-from tracer.visibility.grid import Grid, cube_at
-from tracer.visibility.hidden_lights import HiddenLights, boxes_of_samples
+from tracer.visibility.grid import SHIFT, Grid, boxes_of, cube_at, index_of
+from tracer.visibility.hidden_lights import HiddenLights, LightLists, boxes_of_samples
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
 
+FINEST, MOST_REGIONS = 256, 1 << 24  # regions along the longest side, and in all, at most
+ROOM = 1e-3  # of a region, by which each is taken to be larger: points are led to theirs in float32
 COARSE = 8  # regions on a side of the blocks for which lights are left out first
 BATCH, MOST = 64, 4096  # regions of a frame's first batch, and of any
 HARDLY = 0.8  # of a block's leaves: a region that keeps more is not worth a list of its own
@@ -68,14 +71,12 @@ class RegionStore:
         # Memory that nobody has touched is not taken.
         self.certified, self.wanted = np.zeros(self.grid.cubes, np.int32), np.zeros(self.grid.cubes, np.bool_)
         self._blocks: dict[int, Block] = {}
-        self._starts, self._lights = [np.zeros(1, np.int64)], [np.empty(0, np.int32)]
-        self._lists = 0
+        self._lists = LightLists()
 
     @property
     def bytes(self) -> int:
         """Memory that lists take, in bytes."""
-        blocks = [block.leaves for block in self._blocks.values()]
-        return sum(a.nbytes for arrays in (self._starts, self._lights, blocks) for a in arrays)
+        return self._lists.bytes + sum(block.leaves.nbytes for block in self._blocks.values())
 
     def update(self, lamps: Lamps) -> None:
         """Lights are where these lamps have them now."""
@@ -98,7 +99,7 @@ class RegionStore:
             alone = np.flatnonzero(shared == 0)
             above = [known[k].leaves for k in alone]
             leaves = self.hidden.descend(region_boxes(self.grid, regions[alone]), above, threads, counts, cancel)
-            self.certified[regions[alone]] = self._add(leaves)
+            self.certified[regions[alone]] = self._lists.add([self.hidden.lights_below(found) for found in leaves])
             self.wanted[regions] = False
             made += len(regions)
             batch = min(MOST, 2 * batch)
@@ -126,17 +127,9 @@ class RegionStore:
         left = self.hidden.descend(region_boxes(self.grid, examples), above, threads, counts, cancel)
         fewest = np.array([len(leaves) for leaves in left]).reshape(-1, 3).min(1)
         for number, leaves, least in zip(numbers.tolist(), of_blocks, fewest.tolist(), strict=True):
-            shared = int(self._add([leaves])[0]) if least > HARDLY * len(leaves) else 0
+            shares = [self.hidden.lights_below(leaves)] if least > HARDLY * len(leaves) else []
+            shared = int(self._lists.add(shares).sum())
             self._blocks[number] = Block(leaves, shared)
-
-    def _add(self, leaves: list[NDArray[np.int32]]) -> NDArray[np.int64]:
-        """Make lists of the lights of these leaves; what `RegionView.certified` calls them."""
-        lists = [self.hidden.lights_below(found) for found in leaves]
-        if lists:
-            self._starts.append(self._starts[-1][-1] + np.cumsum([len(lights) for lights in lists]))
-            self._lights.append(np.concatenate(lists))
-        self._lists += len(lists)
-        return self._lists - len(lists) + 1 + np.arange(len(lists))
 
     def keep_within(self, most: float) -> None:
         """Forget all lists where they take more than `most` bytes."""
@@ -145,21 +138,36 @@ class RegionStore:
 
     def view(self) -> RegionView:
         """What kernels are given now."""
-        if len(self._starts) > 1:
-            self._starts, self._lights = [np.concatenate(self._starts)], [np.concatenate(self._lights)]
-        return RegionView(
-            self.grid,
-            self.certified,
-            self.wanted,
-            self._starts[0],
-            self._lights[0],
-            self.hidden.boxes,
-            self.hidden.moved,
-        )
+        lists = self._lists.arrays()
+        return RegionView(self.grid, self.certified, self.wanted, *lists, self.hidden.boxes, self.hidden.moved)
 
-    def hidden_by(self, point: NDArray[np.float32], light: int) -> int:
-        """The number of the triangle that hides a light from the region of a point (3,); -1 for none."""
+    def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        """Whether a triangle hides a light from the region of a point (3,): "full", and its number, or "none"."""
         number = cube_at(self.grid, point)
-        if number < 0 or self.hidden.moved[light]:
-            return -1
-        return self.hidden.hidden_by(region_boxes(self.grid, np.array([number]))[0], light)
+        if number >= 0 and not self.hidden.moved[light]:
+            hider = self.hidden.hidden_by(region_boxes(self.grid, np.array([number]))[0], light)
+            if hider >= 0:
+                return "full", (hider,)
+        return "none", ()
+
+
+def make_grid(bounds: NDArray[np.float64]) -> Grid:
+    """A grid around bounds (2, 3), lower and upper corner."""
+    extent = np.maximum(bounds[1] - bounds[0], 1e-30)
+    side = max(extent.max() / FINEST, (np.prod(np.maximum(extent, extent.max() / FINEST)) / MOST_REGIONS) ** (1 / 3))
+    low = bounds[0] - SHIFT * side
+    nx, ny, nz = (int(n) for n in np.floor((bounds[1] - low) / side) + 1)
+    x, y, z = low.tolist()
+    return Grid(x, y, z, 1.0 / side, nx, ny, nz)
+
+
+def region_boxes(grid: Grid, numbers: NDArray[np.int64], times: int = 1) -> NDArray[np.float64]:
+    """`boxes_of` regions (k,), or of blocks of them, with room for all points that are led to them."""
+    boxes = boxes_of(grid, numbers, ROOM, times)
+    return boxes + 1e-6 * np.abs(boxes).max(1, keepdims=True, initial=0.0) * OUTWARDS
+
+
+def blocks_around(grid: Grid, numbers: NDArray[np.int64], times: int) -> NDArray[np.int64]:
+    """A number (k,) for the block of so many regions on a side that each of regions (k,) lies in."""
+    x, y, z = index_of(grid, numbers)
+    return ((x // times) * grid.ny + y // times) * grid.nz + z // times

@@ -32,11 +32,10 @@ def _fill(words, grid, light, x, y, z, size, mode):
 
 
 @kernel
-def classify_blocks(o, grid, words, light, rounded, blocks, counts):
+def classify_blocks(o, grid, words, light, blocks, counts):
     """Put the states of all voxels of blocks (n,), which are still unknown, for a `Light` into their words.
 
-    o are `Occluders` whose only light that is; words are `Words` of voxels; rounded is more, in units of the scene,
-    than planes are wrong by in float32.  counts (COUNTERS,) int64 are added to."""
+    o are `Occluders` whose only light that is; words are `Words` of voxels.  counts (COUNTERS,) int64 are added to."""
     o = without_refcount(o)
     scratch, of_depth = make_scratch(), np.zeros((DEPTHS, MOST + 2 * LANES), np.int32)  # what a node's shaft meets
     met = np.zeros(DEPTHS, np.int64)  # how many primitives each depth has found
@@ -61,7 +60,7 @@ def classify_blocks(o, grid, words, light, rounded, blocks, counts):
             found, given, above = of_depth[depth], np.int64(MOST + 1), of_depth[max(depth, 1) - 1]
             if depth > 0:
                 given = met[depth - 1]
-            count = come_between(o, light, scratch, middle, half, rounded, above, given, found, counts)
+            count = come_between(o, light, scratch, middle, half, above, given, found, counts)
             if count < 0:
                 _fill(words, grid, light.number, x, y, z, size, FULL_SHADOW)
             elif count == 0:

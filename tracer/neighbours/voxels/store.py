@@ -17,26 +17,26 @@ from numpy.typing import NDArray
 from tracer.culling.modes import FULLY_RENDERED, MAX_CULLED_LIGHTS, forget_lights, shadow_mode, word_type, words_at
 from tracer.culling.rest import Resting, boxes_at_rest
 from tracer.geometry.memory import aligned_rows
+from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.voxels.classify import classify_blocks
 from tracer.neighbours.voxels.contents import list_contents
 from tracer.neighbours.voxels.grid import BLOCK, ROOM, make_grid, voxels_for
 from tracer.neighbours.voxels.tell import VoxelStates, Walked, walked
-from tracer.neighbours.voxels.view import VoxelView
+from tracer.neighbours.voxels.walk import VoxelView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.box_candidates import light_to
-from tracer.visibility.budget import CERTIFICATES, COUNTERS, STEPS, TESTS, Counts
-from tracer.visibility.error_bounds import BOX, LANES, REPORTED
+from tracer.visibility.budget import COUNTERS, Counts
+from tracer.visibility.error_bounds import LANES, REPORTED
 from tracer.visibility.grid import DIGITS, Grid, cube_at
 from tracer.visibility.light_space import FARTHEST, LIGHT_ROW
-from tracer.visibility.static_geometry import NEVER_HIT, StaticGeometry, without_area
+from tracer.visibility.static_geometry import StaticGeometry
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
 
 CHUNK = 16  # blocks that a thread takes at a time
 NAMED = 12  # bytes of lists for a voxel, about
-STATES = "none", "full", "lit"  # of a voxel that is unknown, full and null: the words that certificates have
 
 
 class VoxelStore:
@@ -56,18 +56,19 @@ class VoxelStore:
         rows = self._geometry.rows
         # Half of the memory is for voxels, half for what is kept of each light and primitive.
         held = min(lights, MAX_CULLED_LIGHTS, int(memory / 2) // max(1, 4 * LIGHT_ROW * len(rows)))
-        self._held = held if len(rows) else 0
-        word = word_type(self._held)
+        #: How many lights, the first ones, there is room for.
+        self.held = held if len(rows) else 0
+        word = word_type(self.held)
         each = np.dtype(word).itemsize + 4 + NAMED
         wanted = voxels_for(len(rows), each, memory / 2)
         self._coarser = wanted < voxels_for(len(rows), each, np.inf)
         self.grid: Grid = make_grid(self._geometry.bounds, wanted)
         self.words = np.zeros(self.grid.cubes + 1, word)
-        self._light_space = aligned_rows(self._held * len(rows), LIGHT_ROW).reshape(self._held, len(rows), LIGHT_ROW)
+        self._light_space = aligned_rows(self.held * len(rows), LIGHT_ROW).reshape(self.held, len(rows), LIGHT_ROW)
         # How far from each primitive a hit may be reported: inf where its box alone tells, negative for none at all.
         self._reach, self._more = np.zeros(len(rows), np.float32), 0.0
         self._reach[self._geometry.first_quadric :] = np.inf
-        self._flat = without_area(self._geometry)
+        self._flat = self._geometry.flat()
         self._reach[self._flat] = -1.0
         self._listed = False
         self._starts, self._names = np.zeros(self.grid.cubes + 1, np.int32), np.zeros(LANES, np.int32)
@@ -84,19 +85,14 @@ class VoxelStore:
         return sum(a.nbytes for a in kept) + self._geometry.bytes
 
     @property
-    def held(self) -> int:
-        """How many lights, the first ones, there is room for."""
-        return self._held
-
-    @property
     def told(self) -> str:
         """What there is no memory for, in a sentence, or nothing."""
         lights, grid = min(len(self.places), MAX_CULLED_LIGHTS), self.grid
         said = []
         if self._coarser:
             said.append(f"Memory lowers the grid to {grid.nx} x {grid.ny} x {grid.nz} voxels.")
-        if self._held < lights and len(self._geometry.rows):
-            said.append(f"There is memory for {self._held} of {lights} lights; rays to the others are traced.")
+        if self.held < lights and len(self._geometry.rows):
+            said.append(f"There is memory for {self.held} of {lights} lights; rays to the others are traced.")
         return " ".join(said)
 
     def update(self, lamps: Lamps, resting: Resting) -> None:
@@ -104,7 +100,7 @@ class VoxelStore:
         single = np.diff(lamps.first) == 1
         far = DIGITS * np.abs(lamps.places).max(1, initial=0.0) * self.grid.per_unit > ROOM / 4
         wanted = np.where((single & ~far)[:, None], lamps.places, np.float32(np.nan))
-        wanted[self._held :] = np.nan
+        wanted[self.held :] = np.nan
         moved = np.flatnonzero((wanted != self.places).any(1) & ~np.isnan(self.places[:, 0]))
         if len(moved):
             self._leave_words_to_pictures()
@@ -124,24 +120,21 @@ class VoxelStore:
             self._classify(int(light), threads, counts, cancel)
         if not self._listed:
             self._list_contents()
-        steps, tests, made = (int(counts[:, k].sum()) for k in (STEPS, TESTS, CERTIFICATES))
-        return Counts(steps, tests, made)
+        return Counts(*counts.sum(0).tolist())
 
     def _classify(self, light: int, threads: int, counts: NDArray[np.int64], cancel: Callable[[], bool] | None) -> None:
         geometry, grid, place = self._geometry, self.grid, self._wanted[light].copy()
         self._leave_words_to_pictures()
         forget_lights(self.words, [light])
-        low = np.array([grid.x, grid.y, grid.z])
-        high = low + np.array([grid.nx, grid.ny, grid.nz]) * grid.side
-        known, rounded = light_to(light, 0, place, low, high), 2e-6 * max(geometry.largest, float(np.abs(place).max()))
-        geometry.update_lights([0], place[None], np.zeros(1, np.float32), geometry.beyond(low, high))
+        known = light_to(light, 0, place, grid.around, geometry.largest)
+        geometry.update_points([0], place[None], grid.around)
         self._prepare(light, known.longest)
         many = grid.cubes // BLOCK**3
         shares = np.array_split(np.arange(many), max(1, many // CHUNK))
 
         def work(chunk: int, worker: int) -> None:
             words = words_at(self.words)
-            classify_blocks(geometry.occluders, grid, words, known, rounded, shares[chunk], counts[worker])
+            classify_blocks(geometry.occluders, grid, words, known, shares[chunk], counts[worker])
 
         for_each_chunk(work, len(shares), threads, cancel)
         self.places[light] = place
@@ -149,7 +142,6 @@ class VoxelStore:
     def _prepare(self, light: int, longest: float) -> None:
         """Keep all primitives as the light sees them, and note how far from them its rays may report hits."""
         rows, made = self._geometry.rows, self._geometry.occluders.light_space[0]
-        made[self._flat] = NEVER_HIT
         self._light_space[light] = made
         infirm = made[:, FARTHEST] < 0.0
         reach = np.where(infirm, np.float32(np.inf), self._geometry.occluders.error_radii[0][: len(rows)])
@@ -179,25 +171,17 @@ class VoxelStore:
 
     def view(self, cell: NDArray[np.int32]) -> VoxelView:
         """What kernels are given now; cell (pixels,) int32 gets the voxels of primary hits, if it is not empty."""
-        slot = np.where(np.isnan(self.places[:, 0]), -1, np.arange(len(self.places))).astype(np.int32)
+        words, known = words_at(self.words), ~np.isnan(self.places[:, 0])
         return VoxelView(
-            self.grid,
-            words_at(self.words),
-            self._starts,
-            self._names,
-            self._light_space,
-            slot,
-            self._resting,
-            self._by_ray,
-            cell,
+            self.grid, words, self._starts, self._names, self._light_space, known, self._resting, self._by_ray, cell
         )
 
-    def state_at(self, point: NDArray[np.float32], light: int) -> str:
-        """What is known of a light in the voxel of a point (3,): one of STATES."""
+    def describe(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
+        """What is known of a light in the voxel of a point (3,): one of STATES.  It names no primitives."""
         number = cube_at(self.grid, point)
         if number < 0 or not 0 <= light < len(self.places) or np.isnan(self.places[light, 0]):
-            return STATES[0]
-        return STATES[int(shadow_mode(self.words[number], light))]
+            return STATES[0], ()
+        return STATES[int(shadow_mode(self.words[number], light))], ()
 
     def shown(self) -> VoxelStates:
         """The voxels and their states as they are now, for pictures to hold; the same until anything changes."""
@@ -226,12 +210,3 @@ class VoxelStore:
         return np.where(
             (cell >= 0) & (cell < self.grid.cubes), self.words[cell] & ~word(3) | word(FULLY_RENDERED), word(0)
         )
-
-    def contents(self, number: int) -> NDArray[np.int32]:
-        """The numbers of the primitives in a voxel."""
-        return self._names[self._starts[number] : self._starts[number + 1]]
-
-    @property
-    def boxes(self) -> NDArray[np.float32]:
-        """(primitives, 6) boxes outside of which no hit is reported."""
-        return self._geometry.rows[:, BOX:]

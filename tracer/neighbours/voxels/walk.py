@@ -9,10 +9,12 @@ grid, has its answer.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tracer.culling.counters import STEPS
-from tracer.culling.modes import FULL_SHADOW, NON_SHADOW
+from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, Words
 from tracer.geometry.boxes import inverse
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
@@ -31,10 +33,41 @@ from tracer.simd import (
     select,
     store,
 )
+from tracer.simd.records import I32, Bytes, F32x2D, F32x3D, reading
 from tracer.visibility.ask_list import ASKED, KNOWN, ask_list
-from tracer.visibility.grid import place_of, within
+from tracer.visibility.grid import Grid, place_of, within
 
 ZERO, ONE = np.float32(0), np.float32(1)
+
+
+class VoxelView(NamedTuple):
+    """All voxels, as kernels that are called by address read them.
+
+    Attributes:
+        grid: the voxels.
+        words: their states, with one more word for all that lies outside: in the bits of the occlusion mode 1 where
+            anything static lies in the voxel, and for each light its state as a shadow mode (`tracer.culling.modes`).
+        starts: (voxels + 1,) int32, where in names the primitives of each voxel begin.
+        names: (m,) int32, numbers of primitives.
+        light_space: (held lights, primitives, LIGHT_ROW) float32 (`tracer.visibility.light_space`).
+        known: (lights,) bool, those of the held lights about which anything is known.
+        resting: (k, 6) float32, boxes around what rests now.
+        by_ray: whether steps and tests are counted ray by ray, or for vectors of sixteen.
+        cell: (pixels,) int32, gets the voxel at each primary hit; empty where nobody wants to know.
+    """
+
+    grid: Grid
+    words: Words
+    starts: I32
+    names: I32
+    light_space: F32x3D
+    known: Bytes
+    resting: F32x2D
+    by_ray: bool
+    cell: I32
+
+
+voxel_view_at = reading(VoxelView)
 
 
 @inlined
@@ -78,12 +111,12 @@ def _ask(voxels, rows, light, end, direction, number, occupied, seen, masks, cou
 
 
 @subkernel
-def walk(voxels, light, number, slot, end, begin, open_, counts):
-    """Let those of sixteen rays whose bits are `open_` walk from their ends towards light `number` at light (3,), which
-    is held in a slot: bits of those that are blocked, and of those that nothing static blocks.
+def walk(voxels, light, number, end, begin, open_, counts):
+    """Let those of sixteen rays whose bits are `open_` walk from their ends towards light `number` at light (3,):
+    bits of those that are blocked, and of those that nothing static blocks.
 
     end are three vectors, begin the numbers of the voxels in which they lie."""
-    grid, rows = voxels.grid, address_of(voxels.light_space[slot])
+    grid, rows = voxels.grid, address_of(voxels.light_space[number])
     direction = end[0] - light[0], end[1] - light[1], end[2] - light[2]
     px, py, pz = place_of(grid, end[0], end[1], end[2])
     lx, ly, lz = place_of(grid, light[0], light[1], light[2])
