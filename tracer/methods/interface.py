@@ -1,7 +1,7 @@
 """What a method is: a class with up to a dozen hooks, called in the order of a frame, and stages that are kernels.
 
     begin             what will this frame do?
-    follow            everything that moves has been placed: drop what no longer holds
+    update            everything that moves has been placed: drop what no longer holds
     prepare           the primary hits are known: do what is worth doing before shading
     begin_shading     a pass over the tiles begins
     stages            what the kernels of each worker are given (`tracer.culling.stages`)

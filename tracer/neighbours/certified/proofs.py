@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.neighbours.certified.cell_prism import put_cell
-from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, named_by
+from tracer.neighbours.certified.cells import FULL, LIT, named_by
 from tracer.neighbours.certified.store import CertificateStore
 from tracer.runtime.kernels import kernel
 from tracer.visibility.error_bounds import BOX
@@ -50,8 +50,7 @@ def proofs_of(store: CertificateStore, seen: Iterable[int]) -> list[Proof]:
             if state == LIT:
                 found[Proof(cell, light, "lit", ())] = None
             elif state == FULL:
-                while cell and cells.lists[cell, light] == NOBODY:
-                    cell = int(cells.parent[cell])
+                cell = store.naming(cell, light)
                 names = named_by(cells, cell, light) if cell else None
                 if names is not None and len(names):
                     found[Proof(cell, light, "full", tuple(names.tolist()))] = None

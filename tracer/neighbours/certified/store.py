@@ -339,10 +339,14 @@ class CertificateStore:
         One of STATES, and the numbers of the primitives that it names."""
         number = self._leaf_at(primitive, np.asarray(point, np.float64))
         state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < self.count else 0
-        while number and state == FULL and self.cells.lists[number, light] == NOBODY:
-            number = int(self.cells.parent[number])  # taken over from the cell that this one is a part of
-        names = named_by(self.cells, number, light)
+        names = named_by(self.cells, self.naming(number, light) if state == FULL else number, light)
         return STATES[state], tuple(int(name) for name in (() if names is None else names))
+
+    def naming(self, cell: int, light: int) -> int:
+        """The cell that a FULL one has its certificate from: itself, or one that it is a part of; 0 for none."""
+        while cell and self.cells.lists[cell, light] == NOBODY:
+            cell = int(self.cells.parent[cell])
+        return cell
 
     def _leaf_at(self, primitive: int, point: NDArray[np.float64]) -> int:
         """The leaf in which a point above a primitive lies; 0 for none."""
