@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 import tracer
-from tracer.methods.lightbuffer import LightBuffer
 from tracer.neighbours.lightbuffer.tell import full_depths, list_lengths
 from viewer.output.light_cube import COVERED, NOTHING_THERE, by_depths, by_lists, unfolded
 from viewer.state.palette import BACKGROUND, GREY
@@ -37,10 +36,7 @@ def test_cells_have_the_colours_of_the_legend_which_counts_them():
         tracer.load_scene(resources.scene_path("figure3")),
         tracer.Settings(width=8, height=8, method="lightbuffer", light_buffer_side=64, threads=2),
     )
-    renderer.render()
-    method = renderer.state.method("lightbuffer")
-    assert isinstance(method, LightBuffer) and method.cube_of(99) is None
-    cube = method.cube_of(0)
+    cube = renderer.render().structures["light cubes"][0].cube
     assert cube is not None
     lengths, depths = list_lengths(cube), full_depths(cube)
     covered = (lengths < 0) & np.isfinite(depths)
