@@ -77,7 +77,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 25_890, "tracer": 41_381, "tests/viewer": 12_763, "tests": 37_768}
+MOST_LINES = {"viewer": 25_884, "tracer": 41_379, "tests/viewer": 12_763, "tests": 37_768}
 MOST_FILES = {"viewer": 173}
 
 

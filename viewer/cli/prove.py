@@ -43,6 +43,7 @@ def parser() -> Parser:
     parser.add_argument("--camera", type=arguments.camera, metavar="JSON", help=help_)
     options.add_history(parser)
     options.add_tracing(parser)
+    parser.set_defaults(repeat=0)
     return parser
 
 
@@ -53,13 +54,14 @@ def run(given: Namespace) -> int:
     settings = replace(options.tracing_settings(given), method=METHOD)
     with working() as work:
         scene = options.read_scene(given.path, given, work)
-        time = options.moment(scene, given)
+        time, before = options.moment(scene, given), options.frames_before(scene, given, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, METHOD)
         renderer = Renderer(scene, settings, work.progress)
-        times = [*options.warmup_times(scene, time, given.warmup, work), time]
-        for done, then in enumerate(times):
-            work.count("tracing", done, len(times))
-            frame = renderer.render(then, given.camera, work.cancelled)
+        for done, one in enumerate(before):
+            work.count("tracing", done, len(before) + 1)
+            renderer.render(one.time, one.camera, work.cancelled)
+        work.count("tracing", len(before), len(before) + 1)
+        frame = renderer.render(time, given.camera, work.cancelled)
         method = renderer.state.method(METHOD)
         if not isinstance(method, CertifiedCells) or method.store is None or frame.cells is None:
             raise ValueError(f"{given.path.name}: there are no cells; prove takes scenes of up to 31 lights")

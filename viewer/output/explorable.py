@@ -11,13 +11,11 @@ import json
 import shlex
 import zlib
 from collections.abc import Iterable, Sequence
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from tracer.culling.fate import Fate
 from tracer.frame import Frame
@@ -102,7 +100,7 @@ def _method(name: str, shown: Shown, lights: int) -> dict[str, Any]:
         "name": name,
         "title": Method.parse(name).title,
         "counts": Shown(shown.scene, shown.state, shown.comparison, {name: frame}, shown.reference).counts(name),
-        "picture": _png(frame.pixels),
+        "picture": f"data:image/png;base64,{base64.b64encode(frame._repr_png_()).decode()}",
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
         "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in range(lights)] if of_modes else [],
         "fate": [_deflated(frame.fate(k), np.uint8) for k in range(lights)] if frame.fates is not None else [],
@@ -140,9 +138,3 @@ def _deflated(values: NDArray[Any] | Iterable[Any] | None, kind: type) -> str:
         return ""
     data = np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()
     return base64.b64encode(zlib.compress(data, 9)).decode()
-
-
-def _png(pixels: NDArray[np.uint8]) -> str:
-    file = BytesIO()
-    Image.fromarray(pixels).save(file, "PNG", optimize=True)
-    return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"

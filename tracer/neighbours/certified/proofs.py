@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracer.neighbours.certified.cell_prism import put_cell
 from tracer.neighbours.certified.cells import FULL, LIT, named_by
+from tracer.neighbours.certified.certify import make_scratch
 from tracer.neighbours.certified.store import CertificateStore
+from tracer.neighbours.certified.tasks import put_cell_of
 from tracer.runtime.kernels import kernel
 from tracer.visibility.error_bounds import BOX
-from tracer.visibility.shaft import make_prism_shaft
 
 
 class Proof(NamedTuple):
@@ -27,17 +27,15 @@ class Proof(NamedTuple):
 
 
 @kernel
-def _put(shaft, rows, owner, place, scale):
-    side = 1.0 if owner % 2 == 0 else -1.0
-    u, v, size = np.float64(place[0]), np.float64(place[1]), np.float64(place[2])
-    return put_cell(shaft, rows, owner // 2, side, u, v, size, scale)
+def _put(cells, occluders, cell, scale, scratch):
+    return put_cell_of(cells, occluders, cell, scale, scratch)
 
 
 def prism_of(store: CertificateStore, cell: int) -> NDArray[np.float64]:
     """(6, 3): the corners of the prism in which a cell's shadow rays end, of its floor and then of its ceiling."""
-    shaft, cells = make_prism_shaft(), store.cells
-    _put(shaft, store.occluders.rows, int(cells.owner[cell]), cells.place[cell], store.scale)
-    return shaft.corners.T.copy()
+    scratch = make_scratch()
+    _put(store.cells, store.occluders, cell, store.scale, scratch)
+    return scratch.shaft.corners.T.copy()
 
 
 def proofs_of(store: CertificateStore, seen: Iterable[int]) -> list[Proof]:
