@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from tracer.compiling import compilation
 from tracer.compiling.compilation import compiled_before, warm_up
-from tracer.compiling.processes import _die_with_parent, without_collector
+from tracer.compiling.processes import _die_with_parent, with_types_asked_once, without_collector
 from tracer.compiling.steps import PARTS, steps_of
 
 # Lights (modes in 32 and in 64 bits), structure, and whether only what pictures need is made ready: of other methods
@@ -70,6 +70,7 @@ def main(*parts: str) -> int:
     if parts:
         threading.Thread(target=_die_with_parent, daemon=True).start()
         without_collector()
+        with_types_asked_once()
         for part in parts:
             name, lights, accelerator = part.split(":")
             Part(name, int(lights), accelerator).compile()

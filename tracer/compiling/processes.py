@@ -14,6 +14,9 @@ import threading
 from collections.abc import Callable, Collection
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from typing import Any
+
+from numba.core.types.functions import BaseFunction
 
 from tracer.compiling.estimate import Estimate
 from tracer.compiling.steps import FOR_A_PICTURE, NEEDS, PARTS, SHARES, steps_of
@@ -128,6 +131,21 @@ def without_collector() -> None:
     gc.disable()
 
 
+def with_types_asked_once() -> None:
+    """Let numba find out only once what an operator, or a function, makes of operands of some types: for each `+` in a
+    kernel it tries dozens of ways in turn, which takes a fifth of the time, and the answer is always the same."""
+    ask, known = BaseFunction.get_call_type, {}
+
+    def asked_once(function: BaseFunction, context: Any, args: tuple, kws: dict) -> Any:
+        if kws:
+            return ask(function, context, args, kws)
+        if (function, args) not in known:
+            known[function, args] = ask(function, context, args, kws)
+        return known[function, args]
+
+    BaseFunction.get_call_type = asked_once
+
+
 def _die_with_parent() -> None:
     os.read(0, 1)
     os._exit(1)
@@ -137,6 +155,7 @@ def _main(part: str, lights: str, accelerator: str) -> None:
     """Compile a part, and say on standard output which step comes next, and at the end that there is none."""
     threading.Thread(target=_die_with_parent, daemon=True).start()
     without_collector()
+    with_types_asked_once()
     for step in steps_of(part, int(lights), accelerator):
         print(_STEP + step, flush=True)
     print(_STEP, flush=True)
