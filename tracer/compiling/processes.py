@@ -134,16 +134,17 @@ def without_collector() -> None:
 def with_types_asked_once() -> None:
     """Let numba find out only once what an operator, or a function, makes of operands of some types: for each `+` in a
     kernel it tries dozens of ways in turn, which takes a fifth of the time, and the answer is always the same."""
-    ask, known = BaseFunction.get_call_type, {}
+    ask: Any = BaseFunction.get_call_type
+    known: dict[tuple, Any] = {}
 
-    def asked_once(function: BaseFunction, context: Any, args: tuple, kws: dict) -> Any:
+    def asked_once(function: Any, context: Any, args: Any, kws: Any) -> Any:
         if kws:
             return ask(function, context, args, kws)
         if (function, args) not in known:
             known[function, args] = ask(function, context, args, kws)
         return known[function, args]
 
-    BaseFunction.get_call_type = asked_once
+    BaseFunction.get_call_type = asked_once  # type: ignore[method-assign, assignment]
 
 
 def _die_with_parent() -> None:
