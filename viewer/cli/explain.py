@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from argparse import Namespace
+from dataclasses import replace
 from typing import Any
 
 from rich.console import Console
@@ -13,10 +14,12 @@ from rich.tree import Tree
 
 from tracer.frame import Frame
 from tracer.inspect.mode_origins import ModeOrigins
+from tracer.inspect.paper_steps import PaperSteps, Step, paper_steps, text
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
 from tracer.inspect.why import why
 from tracer.inspect.why_in_words import Words, plain
+from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
@@ -28,6 +31,7 @@ from viewer.cli.console import working
 from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
 from viewer.services.inspector import with_origins
 
+_TEXT = 72  # columns of a step for its text, before its values
 MOST_LIGHTS = 3  # that are named before a sentence that they share; of more, the number is said
 EPILOG = """\
 examples:
@@ -35,10 +39,12 @@ examples:
   shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --only wrong
   shadowcull explain default --pixel 200,300 --method certified
   shadowcull explain default --pixel 200,300 --accelerator kdtree --json
+  shadowcull explain default --pixel 200,300 --steps
 
 The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends: not
 due, culled and by what, passed over, or traced, with the steps and tests of the ray alone and what blocks it. Culling
 uses what earlier frames have shown: --warmup N first traces the N frames before, and --repeat N the frame itself.
+--steps prints the paper's text as it runs for the pixel instead, in each of these frames and in the frame itself.
 """
 
 
@@ -49,6 +55,7 @@ def parser() -> Parser:
     options.add_pixel(parser)
     add("--only", choices=list(RaySubset), default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
+    add("--steps", action="store_true", help="run the paper's text for the pixel, line by line, frame after frame")
     add("--json", action="store_true", help="all rays as JSON on standard output")
     options.add_tracing(parser)
     return parser
@@ -59,6 +66,9 @@ def run(given: Namespace) -> int:
     line, or Cancelled."""
     check_scene_file(given.path)
     settings, (x, y) = options.pixel_settings(given), given.pixel
+    if given.steps:
+        settings = replace(settings, modes=not Method.parse(settings.method).clusters)
+    stepped: list[PaperSteps] = []
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         light = None if given.light is None else options.light_index(given, "--light ", given.light, scene)
@@ -69,20 +79,29 @@ def run(given: Namespace) -> int:
         origins, places = ModeOrigins(len(scene.lights)), None
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
-            modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
+            frame = renderer.render(earlier.time, earlier.camera, work.cancelled)
+            modes = frame.modes
+            if given.steps:
+                stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
             were, places = places, scene.light_positions(earlier.time)
             origins.add(done, modes, None if were is None else (were != places).any(axis=1))  # lights that have moved
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, given.camera, work.cancelled)
+        if given.steps:
+            stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
         found = _with_origins(why(renderer, frame, x, y, work.cancelled), frame, origins, len(before))
     tree = found.tree
     assert tree is not None
     if given.json:
-        print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)}, indent=2))
+        told = {"steps": [[step_data(step) for step in one.steps] for one in stepped]} if given.steps else {}
+        print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)} | told, indent=2))
         return 0
     title = (
         f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     )
+    if given.steps:
+        _print_steps(stepped, scene, light, title)
+        return 0
     _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
     return 0
 
@@ -125,6 +144,42 @@ def _add(tree: Tree, row: RayRow) -> None:
         return
     for one in row.rows:
         _add(below, one)
+
+
+# --- the steps of the paper ------------------------------------------------------------------------------
+
+
+def _print_steps(frames: list[PaperSteps], scene: Scene, light: int | None, title: str) -> None:
+    console = Console(soft_wrap=True)
+    for number, found in enumerate(frames, 1):
+        console.print(Text(f"{title}, frame {number} of {len(frames)}", "bold"))
+        for line in filter(None, [found.remark, *steps_lines(found, scene, light)]):
+            console.print(Text(printable(line)))
+
+
+def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> list[str]:
+    """Return a line for each step, below what it is run for: its number and its text, and the values that it reads and
+    writes.  Of shadow rays those to one light alone, where one is given."""
+    source, lines, of = dict(text()), [], None
+    for step in found.steps:
+        if light is not None and step.part.light not in (-1, light):
+            continue
+        if (step.part, step.note) != of:
+            lines.append(found.heading(step, scene))
+            of = step.part, step.note
+        values = " ".join(filter(None, (step.note, ", ".join(map(str, step.values)))))
+        lines.append(f"{step.line:5} {source[step.line]:{_TEXT}}  {values}".rstrip())
+    return lines
+
+
+def step_data(step: Step) -> dict[str, Any]:
+    """Return a step as data for JSON."""
+    return {
+        "section": step.part.section, "line": step.line, "changes": step.changes, "note": step.note or None,
+        "light": step.part.light if step.part.light >= 0 else None,
+        "values": [{"name": one.name, "before": one.before or None, "is": one.text} for one in step.values],
+        "pixels": step.pixels, "primitives": step.primitives,
+    }  # fmt: skip
 
 
 # --- the reasons as text, and all as JSON --------------------------------------------------------------

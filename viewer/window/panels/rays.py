@@ -263,6 +263,13 @@ def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
+def draw_shadow_ray(made: Pen, frame: Frame, start: NDArray, stop: NDArray, end: NDArray) -> None:
+    """Draw a shadow ray from its light to where it ends, blue from where it is blocked on."""
+    _line(made, RayLine(Part.TRACED, 0, 0, strokes(frame, [start, stop])), 1.0)
+    if (stop != end).any():
+        _line(made, RayLine(Part.BLOCKED, 0, 0, strokes(frame, [stop, end])), 1.0)
+
+
 def _points(made: Pen, tree: RayTree, frame: Frame, chosen: RayRow | None, further: bool) -> None:
     """A ring around each point that is shaded, a larger one at the clicked one; a cross where the chosen ray ends."""
     for ray in tree.rays if further else tree.rays[:1]:
