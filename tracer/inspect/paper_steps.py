@@ -1,11 +1,10 @@
 """The paper's text run line by line for one pixel: `tracer.reference`, §2.3 to §2.6, on the data of a real frame.
 
 Nothing is written twice.  The text is that module's own source, and it runs as plain Python under a trace function,
-which notes what each line reads and writes.  It is given what the frame really had: the primitives at all pixels, the
-modes and counts before it, and the world as it was placed, which answers the shadow rays.  What concerns the pixel is
-run: its comparison with the two reference pixels, its shadow rays at all bounces, and the mode setting of the
-primitives that these speak of.  What other pixels add before modes are set is taken from the frame, in a step of its
-own.
+which notes what each line reads and writes.  It is given what the frame had: the primitives at all pixels, modes and
+counts before it, and the world as it was placed, which answers shadow rays.  What concerns the pixel runs: that it is
+compared with two reference pixels, its shadow rays at all bounces, and mode setting of the primitives that these speak
+of.  What other pixels add to that before modes are set is taken from the frame.
 """
 
 from __future__ import annotations
@@ -13,18 +12,18 @@ from __future__ import annotations
 import ast
 import inspect
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from types import CodeType, FrameType, FunctionType
+from types import FrameType, FunctionType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracer import reference
 from tracer.culling.cells import primitives_are_units
-from tracer.culling.modes import DYNAMIC, MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
+from tracer.culling.modes import MAX_CULLED_LIGHTS, OcclusionMode, ShadowMode, occlusion_mode, shadow_mode
 from tracer.culling.occlusion import occlusion_testing
 from tracer.geometry.as_python import as_python
 from tracer.geometry.queries import hits_alone
@@ -43,16 +42,15 @@ if TYPE_CHECKING:
 
 FIRST, END = "# --- §2.3", "# --- shading"
 """Where the text begins in the module, and what comes after it."""
-OTHERS = "The frame's other pixels:"
+SECTIONS = {"2.3": "occlusion testing", "2.4": "shadow testing", "2.5": "shadow-mode setting",
+            "2.6": "occlusion-mode setting"}  # fmt: skip
+OTHERS = "From here on with what the frame's other pixels have found."
 _MODES = {"occlusion": OcclusionMode, "mode": OcclusionMode, "shadow": ShadowMode, "found": ShadowMode}
 _PRIMITIVES = ("current", "primitive", "p")  # names of primitives in the text
-_SECTIONS = {"2.3": "occlusion testing", "2.4": "shadow testing", "2.5": "shadow-mode setting",
-             "2.6": "occlusion-mode setting"}  # fmt: skip
 
 
 class Value(NamedTuple):
-    """A name as its line has it, with numbers for indices; what it is after the line; and, where the line has changed
-    it, what it was."""
+    """A name as its line has it, with numbers for indices; what it is after the line; what it was, if that is new."""
 
     name: str
     text: str
@@ -63,8 +61,7 @@ class Value(NamedTuple):
 
 
 class Part(NamedTuple):
-    """What runs: the section of the paper, for the pixel, for a light at a point of a primitive, which is where ray
-    number `ray` of the pixel ends, or for a primitive."""
+    """What runs: a section of the paper, for a primitive, and for a light where ray number `ray` of the pixel ends."""
 
     section: str
     primitive: int = MISS
@@ -73,8 +70,8 @@ class Part(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A line that acts: its number in the module, the values that it reads and writes, the pixels and the primitives
-    that it speaks of, and whether it changes a mode; `note` says so where something else has brought its values."""
+    """A line that acts: its number in the module, the values that it reads and writes, the pixels and primitives that
+    it speaks of, and whether it changes a mode; a `note` says where else values come from."""
 
     part: Part
     line: int
@@ -85,95 +82,48 @@ class Step(NamedTuple):
     note: str = ""
 
 
-class Segment(NamedTuple):
-    """A shadow ray: where its light is, where it is blocked, or ends, and where it ends, (3,) each."""
-
-    start: NDArray[np.float32]
-    stop: NDArray[np.float32]
-    end: NDArray[np.float32]
-
-
-@dataclass(frozen=True, eq=False)  # arrays cannot be compared as one
+@dataclass(frozen=True)
 class PaperSteps:
-    """The steps of a pixel of a frame; its shadow rays by ray and light; and the modes that the steps leave, (occlusion,
-    shadow modes), of the primitives that they speak of."""
+    """The steps of a pixel of a frame; its rays in words; and the modes that the steps leave of each primitive: its
+    occlusion mode and its shadow modes."""
 
     x: int
     y: int
     method: str
     steps: tuple[Step, ...]
-    segments: dict[tuple[int, int], Segment]
-    modes: dict[int, tuple[int, tuple[int, ...]]]
+    rays: dict[int, str]
+    modes: dict[int, tuple[int, list[int]]]
 
     @property
     def remark(self) -> str:
-        """What is to be known of these steps where the frame has not made them."""
-        if Method.parse(self.method).kind.name == "paper":
-            return ""
+        """What is to be known of these steps where the frame has not taken them."""
+        own = Method.parse(self.method).kind.name == "paper"
         return (
-            f"The picture is traced by {title_of(self.method)}. These are the steps that the paper's method would take, "
-            "with the modes that it would have."
+            "" if own else f"Traced by {title_of(self.method)}. These are the steps that the paper's method would take."
         )
 
     def heading(self, step: Step, scene: Scene) -> str:
-        """Say what a step's line is run for."""
-        part = step.part
-        said = f"§{part.section} {_SECTIONS[part.section]}"
-        if step.note or part.section == "2.3":
+        """Say what a step's line runs for."""
+        part, said = step.part, f"§{step.part.section} {SECTIONS[step.part.section]}"
+        if part.primitive == MISS:
             return f"{said}, {'all pixels' if step.note else f'pixel {self.x},{self.y}'}"
-        where = primitive_in_words(scene, part.primitive)
-        bounced = f", met by ray {part.ray} of the pixel" if part.ray > 0 else ""
-        return f"{said}, {where}" + (f", {named_light(scene.lights, part.light)}{bounced}" if part.light >= 0 else "")
+        said += f", {primitive_in_words(scene, part.primitive)}"
+        return said if part.light < 0 else f"{said}, {named_light(scene.lights, part.light)}, {self.rays[part.ray]}"
 
 
 def paper_steps(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = None) -> PaperSteps:
-    """Run the paper's text for a pixel.
+    """Run the paper's text for a pixel of the renderer's last frame, all of which is there, in the order of the text.
 
-    Parameters
-    ----------
-    renderer : Renderer
-        The renderer that made the frame; its world must still be placed for it.
-    frame : Frame
-        The picture, all of it.
-    x, y : int
-        Column and row of the pixel.
-    cancelled : callable, optional
-        Asked now and then.
-
-    Returns
-    -------
-    PaperSteps
-        The steps, in the order of the text.
-
-    Raises
-    ------
-    ValueError
-        If the text does not speak of such a frame; the message is one line.
-    IndexError
-        If the picture has no such pixel.
-    LookupError
-        If the renderer has begun another frame.
-    Cancelled
-        Once `cancelled()` is true.
+    Raises ValueError, in one line, if the text does not speak of such a frame, and else what `ray_tree` raises.
     """
-    if problem := why_not(renderer, frame):
-        raise ValueError(problem)
-    tree = ray_tree(renderer, frame, x, y, cancelled)
-    return _Run(renderer, frame, tree, cancelled).steps()
-
-
-def why_not(renderer: Renderer, frame: Frame) -> str:
-    """Return why there are no steps of a frame; "" where there are."""
     work, title = renderer.work_on(frame), title_of(frame.settings.method)
     if not frame.settings.keeps_modes:
-        return f"{title} keeps no modes of the paper"
+        raise ValueError(f"{title} keeps no modes of the paper")
     if len(work.first):
-        return f"{title} keeps modes of cells, and the text speaks of primitives"
-    several = np.flatnonzero(np.diff(work.shading.lamps.first) > 1)
-    if len(several):
-        lamp = named_light(renderer.scene.lights, int(several[0]))
-        return f"the text knows lights that are points, and {lamp} has several samples"
-    return ""
+        raise ValueError(f"{title} keeps modes of cells, and the text speaks of primitives")
+    for lamp in np.flatnonzero(np.diff(work.shading.lamps.first) > 1).tolist():
+        raise ValueError(f"the text knows points of light, and {named_light(renderer.scene.lights, lamp)} is a lamp")
+    return _Run(renderer, frame, x, y, cancelled).steps()
 
 
 # --- the text ----------------------------------------------------------------------------------------
@@ -188,107 +138,55 @@ def text() -> tuple[tuple[int, str], ...]:
 
 
 @cache
-def _statements() -> dict[int, ast.stmt]:
-    """The module's statements by their lines."""
-    return {one.lineno: one for one in ast.walk(ast.parse(inspect.getsource(reference))) if isinstance(one, ast.stmt)}
+def _names() -> dict[int, list[ast.expr]]:
+    """The names that stand in each line of the module, those with indices as one."""
+
+    def names(node: ast.AST) -> list[ast.expr]:
+        match node:
+            case ast.Name() | ast.Attribute() | ast.Subscript():
+                return [node]
+            case ast.If(test=one):
+                return names(one)
+            case ast.For(target=one, iter=other):
+                return names(one) + names(other)
+        return [name for child in ast.iter_child_nodes(node) for name in names(child)]
+
+    statements = (one for one in ast.walk(ast.parse(inspect.getsource(reference))) if isinstance(one, ast.stmt))
+    return {one.lineno: names(one) for one in statements}
 
 
-@cache
-def _line_of(function: str) -> int:
-    """The line that defines a function."""
-    found = (line for line, one in _statements().items() if isinstance(one, ast.FunctionDef) and one.name == function)
-    return next(found)
+_compiled = cache(compile)
 
 
-@cache
-def _codes() -> frozenset[CodeType]:
-    """The functions whose lines are steps."""
-    stepped = (
-        reference.compare_pixel, reference._test_one, reference.reached_by_light, reference.set_shadow_modes_of,
-        reference.set_occlusion_mode_of,
-    )  # fmt: skip
-    return frozenset(one.py_func.__code__ for one in stepped)
-
-
-Scope = tuple[dict[str, Any], dict[str, Any]]
-"""The globals and the locals that a line sees."""
-
-
-@cache
-def _compiled(node: ast.expr) -> CodeType:
-    return compile(ast.unparse(node), "the paper's text", "eval")
-
-
-def _value(node: ast.expr, scope: Scope) -> Any:
-    return eval(_compiled(node), *scope)  # of the text itself
-
-
-def _read(node: ast.AST, scope: Scope) -> Iterator[ast.expr]:
-    """Names that a statement reads, in its order, but for those that it need not look at: as after `or`, where what
-    stands before that is true."""
-    match node:
-        case ast.If(test=part) | ast.For(iter=part) | ast.Assign(value=part) | ast.AugAssign(value=part):
-            yield from _read(part, scope)
-        case ast.BoolOp(op=op, values=[*parts, last]):
-            for part in parts:
-                yield from _read(part, scope)
-                if bool(_value(part, scope)) == isinstance(op, ast.Or):
-                    return
-            yield from _read(last, scope)
-        case ast.IfExp(test=test, body=then, orelse=other):
-            yield from _read(test, scope)
-            yield from _read(then if _value(test, scope) else other, scope)
-        case ast.Call(args=parts):
-            for part in parts:
-                yield from _read(part, scope)
-        case ast.Name() | ast.Attribute() | ast.Subscript():
-            yield node
-        case _:
-            for part in ast.iter_child_nodes(node):
-                yield from _read(part, scope)
-
-
-def _targets(node: ast.AST) -> list[ast.expr]:
-    """What a statement writes."""
-    match node:
-        case ast.Assign(targets=[one]) | ast.AugAssign(target=one) | ast.For(target=one):
-            return list(one.elts) if isinstance(one, ast.Tuple) else [one]
-    return []
-
-
-def _name(node: ast.expr, scope: Scope) -> str:
-    """A name with numbers for its indices."""
-    if not isinstance(node, ast.Subscript):
-        return ast.unparse(node)
-    indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-    shown = [str(scope[1][one.id]) if isinstance(one, ast.Name) and one.id in scope[1] else ast.unparse(one)
-             for one in indices]  # fmt: skip
-    return f"{ast.unparse(node.value)}[{', '.join(shown)}]"
+def _values(frame: FrameType, line: int) -> dict[str, str]:
+    """The local names that stand in a line, with numbers for indices, in words; no index is before the first."""
+    found, known = {}, dict(frame.f_locals)
+    for node in _names()[line]:
+        name, _, indices = ast.unparse(node).partition("[")
+        if indices:
+            numbers = (str(known.get(one, one)) for one in indices[:-1].split(", "))
+            name = f"{name}[{', '.join(numbers)}]"
+        if name.split("[")[0].split(".")[0] in known and "[-" not in name and " -" not in name:
+            with suppress(IndexError):  # a light that has no modes
+                found[name] = in_words(name, eval(_compiled(name, reference.__name__, "eval"), frame.f_globals, known))
+    return found
 
 
 def in_words(name: str, value: Any) -> str:
-    """Return a value of the text as it is shown, modes in binary; "" for what holds many."""
+    """Return a value of the text as it is shown, modes in binary; "" for what holds many, and for one coordinate."""
     last = name.partition("[")[0].rpartition(".")[2]
-    if isinstance(value, tuple):
-        return f"({', '.join(f'{one:.4g}' for one in value)})" if len(value) == 3 else ""
+    if isinstance(value, tuple) and len(value) == 3:
+        return f"({', '.join(f'{one:.4g}' for one in value)})"
     if isinstance(value, bool | np.bool_):
         return str(bool(value))
-    if isinstance(value, int | np.integer) and last in _MODES:
-        return f"{int(value):02b} {_MODES[last](int(value)).name}"
-    if last in _PRIMITIVES and value == MISS:
-        return "MISS"
-    return f"{value:.6g}" if isinstance(value, int | float | np.number) else ""
+    if isinstance(value, int | np.integer):
+        if last in _MODES:
+            return f"{int(value):02b} {_MODES[last](int(value)).name}"
+        return "MISS" if last in _PRIMITIVES and value == MISS else str(value)
+    return f"{value:g}" if isinstance(value, float) else ""
 
 
 # --- running it --------------------------------------------------------------------------------------
-
-
-class _Line(NamedTuple):
-    """A line that has begun: its place among the steps, its statement, and what its targets were."""
-
-    place: int
-    statement: ast.stmt
-    before: dict[str, str]
 
 
 class _Recorder:
@@ -297,7 +195,12 @@ class _Recorder:
     def __init__(self) -> None:
         self.steps: list[Step] = []
         self._part = Part("2.3")
-        self._begun: dict[FrameType, _Line] = {}
+        self._begun: dict[FrameType, tuple[int, dict[str, str]]] = {}  # the step that acts, and values before it
+        stepped = (
+            reference.compare_pixel, reference._test_one, reference.reached_by_light, reference.set_shadow_modes_of,
+            reference.set_occlusion_mode_of,
+        )  # fmt: skip
+        self._codes = {one.py_func.__code__ for one in stepped}
 
     def run(self, part: Part, function: Callable, *arguments: Any) -> None:
         """Run a function."""
@@ -312,183 +215,125 @@ class _Recorder:
     def answer(self, name: str, text: str, *primitives: int) -> None:
         """Note what the line that acts was answered."""
         step = self.steps[-1]
-        found = step.primitives + primitives
-        self.steps[-1] = step._replace(values=(*step.values, Value(name, text)), primitives=found)
+        values, spoken_of = (*step.values, Value(name, text)), (*step.primitives, *primitives)
+        self.steps[-1] = step._replace(values=values, primitives=spoken_of)
 
     def _call(self, frame: FrameType, _event: str, _argument: Any) -> Callable | None:
         if frame.f_code is hits_alone.py_func.__code__:
             frame.f_trace_lines = False
             return self._hit
-        return self._go_on if frame.f_code in _codes() else None
+        return self._go_on if frame.f_code in self._codes else None
 
-    def _hit(self, _frame: FrameType, event: str, argument: Any) -> Callable:
+    def _hit(self, _frame: FrameType, event: str, argument: Any) -> None:
         if event == "return":
             self.answer("hits_alone", str(bool(argument)))
-        return self._hit
 
     def _go_on(self, frame: FrameType, event: str, argument: Any) -> Callable:
-        scope = frame.f_globals, dict(frame.f_locals)
-        line = self._begun.pop(frame, None)
-        if line is not None:
-            self._finish(line, scope, frame.f_lineno if event == "line" else -1)
+        if frame in self._begun:
+            self._end(*self._begun.pop(frame), frame)
         if event == "line":
-            self._begin(frame, scope)
-        elif event == "return" and isinstance(argument, bool | np.bool_):
+            self._begun[frame] = len(self.steps), _values(frame, frame.f_lineno)
+            self.steps.append(Step(self._part, frame.f_lineno))
+        elif isinstance(argument, bool | np.bool_):
             self.answer("returns", str(bool(argument)))
         return self._go_on
 
-    def _begin(self, frame: FrameType, scope: Scope) -> None:
-        statement = _statements()[frame.f_lineno]
-        reads = [(_name(one, scope), _value(one, scope)) for one in _read(statement, scope) if _is_local(one, scope)]
-        values = [Value(name, in_words(name, value)) for name, value in reads]
-        written = [one for one in _targets(statement) if isinstance(one, ast.Subscript)]
-        before = {name: in_words(name, _value(one, scope)) for one in written for name in [_name(one, scope)]}
-        self._begun[frame] = _Line(len(self.steps), statement, before)
-        self.steps.append(Step(self._part, frame.f_lineno, tuple(dict.fromkeys(v for v in values if v.text))))
-
-    def _finish(self, line: _Line, scope: Scope, then: int) -> None:
-        """Add what a line has written, and what it speaks of; `then` is the line that acts next, -1 for none."""
-        step, statement, changes = self.steps[line.place], line.statement, False
-        values = list(step.values)
-        ended = isinstance(statement, ast.For) and not statement.lineno < then <= (statement.end_lineno or 0)
-        for one in () if ended else _targets(statement):
-            name, value = _name(one, scope), _value(one, scope)
-            now, was = in_words(name, value), line.before.get(name, "")
-            changed = was not in ("", now)
-            changes |= changed and name.startswith(("modes.occlusion", "modes.shadow"))
-            if now:
-                values.append(Value(name, now, was if changed else ""))
-        pixels, primitives = _spoken_of(scope[1])
-        self.steps[line.place] = step._replace(
-            values=tuple(values), pixels=pixels, primitives=(*primitives, *step.primitives), changes=changes
-        )
+    def _end(self, place: int, before: dict[str, str], frame: FrameType) -> None:
+        """Note what has become of a line's values, and what it speaks of."""
+        step, values = self.steps[place], []
+        for name, now in _values(frame, step.line).items():
+            was = before.get(name, "")
+            values += [Value(name, now, was if was != now else "")] if now else []
+        pixels, primitives = _spoken_of(frame.f_locals)
+        changes = any(one.before and one.name.startswith(("modes.occlusion", "modes.shadow")) for one in values)
+        values, primitives = [*values, *step.values], [*primitives, *step.primitives]  # answers come last
+        self.steps[place] = Step(step.part, step.line, tuple(values), pixels, tuple(primitives), changes)
 
 
-def _is_local(node: ast.expr, scope: Scope) -> bool:
-    """Whether a name begins with a local one: others are constants of the module."""
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        node = node.value
-    return isinstance(node, ast.Name) and node.id in scope[1]
-
-
-def _spoken_of(names: dict[str, Any]) -> tuple[tuple[Pixel, ...], tuple[int, ...]]:
+def _spoken_of(names: Mapping[str, Any]) -> tuple[tuple[Pixel, ...], tuple[int, ...]]:
     """The pixels and primitives that local names stand for."""
-    pixels = [(int(names[x]), int(names[y])) for x, y in (("x", "y"), ("rx", "ry")) if y in names]
-    primitives = [int(names[name]) for name in _PRIMITIVES if name in names]
-    if "rx" in names and min(pixels[-1]) >= 0:
-        primitives.append(int(names["work"].primitive[names["ry"], names["rx"]]))
-    return tuple(one for one in pixels if min(one) >= 0), tuple(one for one in primitives if one != MISS)
+    pixels = [(names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names]
+    pixels = [one for one in pixels if min(one) >= 0]
+    primitives = [names[name] for name in _PRIMITIVES if name in names]
+    primitives += [names["work"].primitive[y, x] for x, y in pixels[1:]]
+    return tuple(pixels), tuple(int(one) for one in primitives if one != MISS)
 
 
 class _Run:
-    """One pixel's run."""
+    """One pixel's run: with the data of the frame, for the primitives that its rays and reference pixels see."""
 
-    def __init__(self, renderer: Renderer, frame: Frame, tree: RayTree, cancelled: Cancel) -> None:
-        self._renderer, self._frame, self._tree, self._cancelled = renderer, frame, tree, cancelled
-        work, world = renderer.work_on(frame), renderer.world.placed
-        self._recorder = _Recorder()
-        self._rays = [ray for ray in _in_order(tree) if tree.rays[ray].shadows is not None]
-        x, y = tree.x, tree.y
-        seen = [(x, y), *((x - 1, y),) * (x > 0), *((x, y - 1),) * (y > 0)]
-        numbers = {int(frame.primitive[row, column]) for column, row in seen}
-        self._concerned = sorted((numbers | {tree.rays[ray].primitive for ray in self._rays}) - {MISS})
-        count, lights = len(frame.modes), min(frame.lights, MAX_CULLED_LIGHTS)
-        # Zeros take no memory where nothing is written.
-        modes = reference.Modes(
-            np.zeros(count, np.uint8), np.zeros((count, lights), np.uint8), np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-        )  # fmt: skip
+    def __init__(self, renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel) -> None:
+        self._world, self._frame, self._cancelled, self._recorder = renderer.world, frame, cancelled, _Recorder()
+        self._tree = tree = ray_tree(renderer, frame, x, y, cancelled)
+        rays = [tree.rays[number] for number in _in_order(tree, -1)]
+        self._rays = [ray for ray in rays if ray.shadows is not None]
+        seen = frame.primitive[[y, y, max(y - 1, 0)], [x, max(x - 1, 0), x]].tolist()
+        self._concerned = sorted({*seen, *(ray.primitive for ray in self._rays)} - {MISS})
+        lights, work = min(frame.lights, MAX_CULLED_LIGHTS), renderer.work_on(frame)
+
+        def zeros(kind: type, *shape: int) -> Any:  # of which what stays zero takes no memory
+            return np.zeros((len(frame.modes), *shape), kind)
+
+        modes = reference.Modes(zeros(np.uint8), zeros(np.uint8, lights), zeros(np.int32), zeros(np.int32))
         for one in self._concerned:
             modes.occlusion[one] = occlusion_mode(frame.modes_before[one])
             modes.shadow[one] = [shadow_mode(frame.modes_before[one], light) for light in range(lights)]
             modes.highest_count[one] = renderer.highest_before[one]
-        occluded, found = np.zeros(count, np.bool_), np.zeros((count, lights), np.uint8)
-        counts = np.zeros(len(reference.COUNTED), np.int64)
         self._work = reference.Work(
-            world, work.shading, work.rays, tree.samples, modes, frame.primitive, occluded, found, counts
-        )
+            world=self._world.placed, shading=work.shading, camera=work.rays, lights=tree.samples, modes=modes,
+            primitive=frame.primitive, occluded=zeros(np.bool_), found=zeros(np.uint8, lights),
+            counts=np.zeros(len(reference.COUNTED), np.int64),
+        )  # fmt: skip
 
     def steps(self) -> PaperSteps:
         """Run the text, section by section."""
-        run, work, settings = self._recorder.run, self._work, self._frame.settings
-        modes, compare = work.modes, as_python(reference.compare_pixel)
-        run(Part("2.3", self._tree.rays[0].primitive), compare, work, self._tree.x, self._tree.y, settings.symmetric)
-        segments = self._shadow_testing()
-        self._take_found()
-        for one in self._concerned:
+        run, work, modes, frame, tree = self._recorder.run, self._work, self._work.modes, self._frame, self._tree
+        settings, concerned = frame.settings, self._concerned
+        run(Part("2.3"), as_python(reference.compare_pixel), work, tree.x, tree.y, settings.symmetric)
+        self._test_shadows()
+        for one in concerned:  # a frame does not keep what repeats known modes
+            gained = frame.modes[one] & ~frame.modes_before[one]
+            work.found[one] |= [shadow_mode(gained, light) for light in range(work.found.shape[1])]
+        self._join_others("2.5", reference.set_shadow_modes)
+        for one in concerned:
             run(Part("2.5", one), as_python(reference.set_shadow_modes_of), work, one)
-        self._take_occluded()
-        for one in self._concerned:
+        seen, words = (work.world, work.camera, work.primitive), np.zeros_like(frame.modes)
+        occlusion_testing(
+            *seen, primitives_are_units(), work.primitive, settings.symmetric, 0, frame.height, words, work.occluded
+        )
+        modes.pixel_count[concerned] = frame.pixel_count[concerned]
+        self._join_others("2.6", reference.set_occlusion_modes)
+        for one in concerned:
             run(Part("2.6", one), as_python(reference.set_occlusion_mode_of), work, one, settings.zoom_factor)
-        left = {one: (int(modes.occlusion[one]), tuple(modes.shadow[one].tolist())) for one in self._concerned}
-        steps = tuple(self._recorder.steps)
-        return PaperSteps(self._tree.x, self._tree.y, settings.method, steps, segments, left)
+        left = {one: (int(modes.occlusion[one]), modes.shadow[one].tolist()) for one in concerned}
+        rays = {ray.number: f"bounce {ray.bounce}, {ray.kind.value} ray" for ray in self._rays}
+        return PaperSteps(tree.x, tree.y, settings.method, tuple(self._recorder.steps), rays, left)
 
-    def _shadow_testing(self) -> dict[tuple[int, int], Segment]:
+    def _join_others(self, section: str, function: Any) -> None:
+        """Note at the head of a function that what other pixels have found counts from here on."""
+        line, concerned = function.py_func.__code__.co_firstlineno + 1, tuple(self._concerned)
+        self._recorder.steps.append(Step(Part(section), line, primitives=concerned, note=OTHERS))
+
+    def _test_shadows(self) -> None:
         plain = as_python(reference.reached_by_light)
         reached = FunctionType(plain.__code__, {**plain.__globals__, "_blocked": self._blocked}, plain.__name__)
-        segments = {}
-        for number in self._rays:
-            ray = self._tree.rays[number]
-            assert ray.shadows is not None
-            for light in np.flatnonzero(ray.shadows.verdict != AWAY).tolist():
+        for ray in self._rays:
+            for light in [] if ray.shadows is None else np.flatnonzero(ray.shadows.verdict != AWAY).tolist():
                 if self._cancelled is not None and self._cancelled():
                     raise Cancelled("cancelled")
-                start, at = self._tree.samples[light], ray.shadows.blocked_at[light]
-                stop = start + at * (ray.end - start) if ray.shadows.blocker[light] >= 0 else ray.end
-                segments[number, light] = Segment(start, stop, ray.end)
-                part = Part("2.4", ray.primitive, light, number)
+                part = Part("2.4", ray.primitive, light, ray.number)
                 self._recorder.run(part, reached, self._work, ray.primitive, tuple(ray.end), light)
-        return segments
 
     def _blocked(self, _world: Any, ray: Any, which: int, _cost: Any) -> bool:
-        """Ask the frame's world whether something is in the way."""
-        batch = ray_batch([ray[:3]], [ray[3:6]], ray.t_min, ray.t_max)
-        found = int(self._renderer.world.occluders_each(batch, which)[0][0])
-        if found == MISS:
-            self._recorder.answer("_blocked", "False, nothing is in the way")
-        else:
-            self._recorder.answer("_blocked", f"True, by {found}", found)
-        return found != MISS
-
-    # --- what other pixels have found -----------------------------------------------------------------
-
-    def _take_found(self) -> None:
-        """The shadow modes that the frame has set; what only repeats known ones is not told."""
-        work, frame, values = self._work, self._frame, []
-        for one in self._concerned:
-            if work.modes.occlusion[one] == DYNAMIC:
-                continue
-            for light in range(work.found.shape[1]):
-                gained = shadow_mode(frame.modes[one] & ~frame.modes_before[one], light)
-                values += self._put(work.found, f"work.found[{one}, {light}]", (one, light), work.found[one, light] | gained)
-        self._add_others("2.5", "set_shadow_modes", values)
-
-    def _take_occluded(self) -> None:
-        """What tests at all pixels have found occluded, and how many pixels see each primitive."""
-        work, frame, values = self._work, self._frame, []
-        occluded, words = np.zeros(len(frame.modes), np.bool_), np.zeros_like(frame.modes)
-        seen = work.world, work.camera, work.primitive, primitives_are_units(), work.primitive
-        occlusion_testing(*seen, frame.settings.symmetric, 0, frame.height, words, occluded)
-        for one in self._concerned:
-            values += self._put(work.occluded, f"work.occluded[{one}]", one, occluded[one])
-            values += self._put(work.modes.pixel_count, f"modes.pixel_count[{one}]", one, frame.pixel_count[one])
-        self._add_others("2.6", "set_occlusion_modes", values)
-
-    @staticmethod
-    def _put(array: NDArray, name: str, at: Any, value: Any) -> list[Value]:
-        """Put a value into an array, and return it if it is news."""
-        was, array[at] = in_words(name, array[at]), value
-        now = in_words(name, array[at])
-        return [Value(name, now, was)] if now != was else []
-
-    def _add_others(self, section: str, function: str, values: list[Value]) -> None:
-        step = Step(Part(section), _line_of(function), tuple(values), primitives=tuple(self._concerned), note=OTHERS)
-        self._recorder.steps.append(step)
+        """Ask the frame's world what is in the way."""
+        found, _ = self._world.occluders_each(ray_batch([ray[:3]], [ray[3:6]], ray.t_min, ray.t_max), which)
+        by = int(found[0])
+        self._recorder.answer("_blocked", "False" if by == MISS else f"True, by {by}", *[by] * (by != MISS))
+        return by != MISS
 
 
-def _in_order(tree: RayTree, parent: int = -1) -> Iterator[int]:
-    """The pixel's rays in the order in which the reference follows them: each, then what it has sent on."""
+def _in_order(tree: RayTree, parent: int) -> Iterator[int]:
+    """The rays of a pixel as the reference follows them: each, then what it has sent on."""
     for number in tree.children.get(parent, ()):
         yield number
         yield from _in_order(tree, number)

@@ -14,7 +14,7 @@ from rich.tree import Tree
 
 from tracer.frame import Frame
 from tracer.inspect.mode_origins import ModeOrigins
-from tracer.inspect.paper_steps import PaperSteps, Step, paper_steps, text
+from tracer.inspect.paper_steps import PaperSteps, paper_steps, text
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
 from tracer.inspect.why import why
@@ -55,8 +55,9 @@ def parser() -> Parser:
     options.add_pixel(parser)
     add("--only", choices=list(RaySubset), default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
-    add("--steps", action="store_true", help="run the paper's text for the pixel, line by line, frame after frame")
-    add("--json", action="store_true", help="all rays as JSON on standard output")
+    instead = parser.add_mutually_exclusive_group()
+    instead.add_argument("--steps", action="store_true", help="run the paper's text for the pixel, line by line")
+    instead.add_argument("--json", action="store_true", help="all rays as JSON on standard output")
     options.add_tracing(parser)
     return parser
 
@@ -93,14 +94,15 @@ def run(given: Namespace) -> int:
     tree = found.tree
     assert tree is not None
     if given.json:
-        told = {"steps": [[step_data(step) for step in one.steps] for one in stepped]} if given.steps else {}
-        print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)} | told, indent=2))
+        print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)}, indent=2))
         return 0
     title = (
         f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     )
+    for number, steps in enumerate(stepped, 1):
+        print(printable(f"{title}, frame {number} of {len(stepped)}"))
+        print(*map(printable, steps_lines(steps, scene, light)), sep="\n")
     if given.steps:
-        _print_steps(stepped, scene, light, title)
         return 0
     _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
     return 0
@@ -149,37 +151,18 @@ def _add(tree: Tree, row: RayRow) -> None:
 # --- the steps of the paper ------------------------------------------------------------------------------
 
 
-def _print_steps(frames: list[PaperSteps], scene: Scene, light: int | None, title: str) -> None:
-    console = Console(soft_wrap=True)
-    for number, found in enumerate(frames, 1):
-        console.print(Text(f"{title}, frame {number} of {len(frames)}", "bold"))
-        for line in filter(None, [found.remark, *steps_lines(found, scene, light)]):
-            console.print(Text(printable(line)))
-
-
 def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> list[str]:
-    """Return a line for each step, below what it is run for: its number and its text, and the values that it reads and
-    writes.  Of shadow rays those to one light alone, where one is given."""
-    source, lines, of = dict(text()), [], None
+    """Return a line for each step, below what it runs for: its number, its text and its values; `light` leaves out
+    shadow rays to others."""
+    source, lines, of = dict(text()), [found.remark] if found.remark else [], ("", "")
     for step in found.steps:
         if light is not None and step.part.light not in (-1, light):
             continue
-        if (step.part, step.note) != of:
-            lines.append(found.heading(step, scene))
-            of = step.part, step.note
+        if of != (of := (found.heading(step, scene), step.note)):
+            lines.append(of[0])
         values = " ".join(filter(None, (step.note, ", ".join(map(str, step.values)))))
         lines.append(f"{step.line:5} {source[step.line]:{_TEXT}}  {values}".rstrip())
     return lines
-
-
-def step_data(step: Step) -> dict[str, Any]:
-    """Return a step as data for JSON."""
-    return {
-        "section": step.part.section, "line": step.line, "changes": step.changes, "note": step.note or None,
-        "light": step.part.light if step.part.light >= 0 else None,
-        "values": [{"name": one.name, "before": one.before or None, "is": one.text} for one in step.values],
-        "pixels": step.pixels, "primitives": step.primitives,
-    }  # fmt: skip
 
 
 # --- the reasons as text, and all as JSON --------------------------------------------------------------

@@ -1,7 +1,7 @@
 """The paper's text run line by line for the pixel that is selected: where the user is in it, over several frames.
 
-Each frame that is shown is run as a query, where somebody looks.  Frames that have been run are kept, so that one can
-step back into them; stepping on past the end of the newest traces the same frame once more."""
+Where somebody looks, each frame that is shown is run, as a query.  Frames of the same view join those that are there,
+so that one can step on into them, and back; stepping on past the end of the newest traces the same frame once more."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tracer.inspect.paper_steps import PaperSteps, Step, paper_steps
 from tracer.renderer import Renderer
 from viewer.services.inspector import Selection
 from viewer.services.render_request import Ask, Newest, Traced, is_same_picture
-from viewer.state.picking import Pick, same_place
+from viewer.state.picking import Pick, Seen, seen_of
 
 MOST_KEPT = 16  # frames
 
@@ -31,19 +31,21 @@ def run_text(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callab
 
 
 class Stepping:
-    """The steps of the selected pixel, frame after frame, and the one that is shown; `problem` says why there are
-    none."""
+    """`runs` has the steps of each frame, and what was seen in it; the step that is shown is number `place` of number
+    `frame`.  `problem` says why there are none, `shown` that somebody looks."""
 
     def __init__(self, selection: Selection, query: Ask, trace_again: Callable[[], None]) -> None:
         self._selection, self._query, self._trace_again = selection, query, trace_again
-        self._newest = Newest()
         self._of: Pick | None = None
-        self._frame: Frame | None = None  # that was run last
         self._watched = False
-        self._wanted = ""  # where the user goes in the next frame: to its "first" step, or its first "change"
-        self.frames: list[PaperSteps] = []
-        self.frame = self.place = 0  # of the step that is shown: its frame, and its place there
-        self.shown, self.problem = False, ""
+        self._forget("", None)
+
+    def _forget(self, problem: str, taken: Frame | None) -> None:
+        self._newest, self._taken = Newest(), taken  # the frame that was run last
+        self._wanted: Callable[[], None] | None = None  # what is done in the next frame, once it is there
+        self.runs: list[tuple[Seen, PaperSteps]] = []
+        self.frame = self.place = 0
+        self.shown, self.problem = False, problem
 
     def watch(self) -> None:
         """Say that somebody looks, in each frame of the window."""
@@ -51,73 +53,68 @@ class Stepping:
 
     def update(self, traced: Traced | None, idle: bool) -> None:
         """Take up what has been run, and run the newest picture, `traced`, when `idle`."""
+        picked, at = self._selection.picked, self._selection.pixel
+        if picked is not self._of:
+            self._of = picked
+            self._forget("", None)
         self.shown, self._watched = self._watched, False
-        if self._selection.picked is not self._of:
-            self._of, self._newest, self._frame = self._selection.picked, Newest(), None
-            self.frames, self.frame, self.place, self._wanted, self.problem = [], 0, 0, "", ""
-        at = self._selection.pixel
         if not self.shown or not idle or traced is None or not traced.whole or at is None:
             return
-        if self._stays_with(traced):
+        if self._taken is not None and is_same_picture(self._taken, traced.frame):
             return
         self._newest.take(self._query(run_text, traced.frame, *at))
-        if self._newest.answer is not None and is_same_picture(self._newest.answer[0], traced.frame):
-            self._take(*self._newest.answer)
+        answer: Answer | None = self._newest.answer
+        if answer is not None and answer[1] is not None and is_same_picture(answer[0], traced.frame):
+            self._take(answer[0], answer[1], traced.fresh)
 
-    def _stays_with(self, traced: Traced) -> bool:
-        """Whether what has been run last is still what one wants to see."""
-        last = self._frame
-        if last is None or is_same_picture(last, traced.frame):
-            return last is not None
-        return bool(self.frames) and traced.request.refines and not self._wanted and same_place(last, traced.frame)
-
-    def _take(self, frame: Frame, found: PaperSteps | str | None) -> None:
-        if found is None:
-            return
-        self._frame, self.problem = frame, found if isinstance(found, str) else ""
+    def _take(self, frame: Frame, found: PaperSteps | str, fresh: bool) -> None:
+        """Add the steps of a frame, and go there if that is wanted, or if it is another view; `fresh`: nothing was
+        known of modes."""
         if isinstance(found, str):
-            self.frames, self.frame, self.place = [], 0, 0
-        else:
-            self.frames = [*self.frames[1 - MOST_KEPT :], found]
-            self.frame, self.place = len(self.frames) - 1, 0
-            if self._wanted == "change":
-                self.go_to_change()
-        self._wanted = ""
-
-    # --- where one is -------------------------------------------------------------------------------
+            self._forget(found, frame)
+            return
+        self._taken = frame
+        before, run = [(seen, steps.method) for seen, steps in self.runs[-1:]], (seen_of(frame), found)
+        if self._wanted is not None or fresh or before != [(run[0], found.method)]:
+            self.runs = [*self.runs[1 - MOST_KEPT :], run]
+            self.frame, self.place = len(self.runs) - 1, 0
+            wanted, self._wanted = self._wanted, None
+            if wanted is not None:
+                wanted()
+        elif len(self.runs) < MOST_KEPT:
+            self.runs.append(run)
 
     @property
     def now(self) -> PaperSteps | None:
         """The steps of the frame that one is in."""
-        return self.frames[self.frame] if self.frames else None
+        return self.runs[self.frame][1] if self.runs else None
 
     @property
     def step(self) -> Step | None:
         """The step that is shown."""
-        return self.frames[self.frame].steps[self.place] if self.frames else None
+        return self.now.steps[self.place] if self.now is not None else None
 
     @property
     def waits(self) -> bool:
         """Whether the next frame is on its way."""
-        return bool(self._wanted)
+        return self._wanted is not None
 
     def is_of(self, frame: Frame) -> bool:
         """Whether the step that is shown speaks of what this frame shows."""
-        newest = self.shown and bool(self.frames) and self.frame == len(self.frames) - 1
-        return newest and self._frame is not None and same_place(self._frame, frame)
+        return self.shown and bool(self.runs) and self.runs[self.frame][0] == seen_of(frame)
 
     def go(self, by: int) -> None:
         """Go a step on or back, also into the frame after this one, or before it."""
         if self.now is None:
             return
-        place = self.place + by
-        if 0 <= place < len(self.now.steps):
+        place, last = self.place + by, len(self.now.steps) - 1
+        if 0 <= place <= last:
             self.place = place
-        elif place < 0 and self.frame > 0:
+        elif place > last:
+            self._go_on(lambda: None)
+        elif self.frame:
             self.frame -= 1
             self.place = len(self.now.steps) - 1
-        elif place > 0:
-            self._go_on("first")
 
     def go_to_change(self) -> None:
         """Go to the next step that changes a mode; past the last one to the end of the frame, and then on."""
@@ -125,16 +122,15 @@ class Stepping:
             return
         steps, last = self.now.steps, len(self.now.steps) - 1
         if self.place == last:
-            self._go_on("change")
+            self._go_on(self.go_to_change)
         else:
             self.place = next((at for at in range(self.place + 1, last) if steps[at].changes), last)
 
-    def _go_on(self, wanted: str) -> None:
-        """Go to the next frame, once it is there."""
-        if self.frame < len(self.frames) - 1:
-            self.frame, self.place = self.frame + 1, 0
-            if wanted == "change":
-                self.go_to_change()
-        else:
-            self._wanted = wanted
+    def _go_on(self, there: Callable[[], None]) -> None:
+        """Go to the first step of the next frame, once it is there, and do something there."""
+        if self.frame == len(self.runs) - 1:
+            self._wanted = there
             self._trace_again()
+        else:
+            self.frame, self.place = self.frame + 1, 0
+            there()

@@ -107,17 +107,15 @@ def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2,
 
 def _step(ui: Ui, made: Pen, frame: Frame) -> None:
     """The pixels, the primitives and the shadow ray that the line of the paper's text speaks of."""
-    stepping = ui.controller.stepping
-    step, now = stepping.step, stepping.now
-    if step is None or now is None or not stepping.is_of(frame):
+    step, tree = ui.controller.stepping.step, ui.controller.inspector.tree
+    if step is None or not ui.controller.stepping.is_of(frame):
         return
     for number in dict.fromkeys(step.primitives[:_MOST_NAMED]):
         _outline(ui, made, frame, number, _STEPPED, f"stepped {number}")
     for number, pixel in enumerate(step.pixels):
-        made.square(*_square_of(made, frame, pixel), _SAME if number else WHITE)
-    segment = now.segments.get((step.part.ray, step.part.light))
-    if segment is not None:
-        rays.draw_shadow_ray(made, frame, *segment)
+        made.square(*_square_of(made, frame, pixel), _STEPPED if number else WHITE)
+    if tree is not None and step.part.light >= 0:
+        rays.draw_shadow_ray(made, frame, tree, step.part.ray, step.part.light)
 
 
 # --- what is selected -------------------------------------------------------------------------------

@@ -263,11 +263,10 @@ def _line(made: Pen, line: RayLine, alpha: float, width: float = 1.0) -> None:
     made.strokes(line.strokes, ImVec4(*color, alpha), width * ems, _BEHIND, around)
 
 
-def draw_shadow_ray(made: Pen, frame: Frame, start: NDArray, stop: NDArray, end: NDArray) -> None:
-    """Draw a shadow ray from its light to where it ends, blue from where it is blocked on."""
-    _line(made, RayLine(Part.TRACED, 0, 0, strokes(frame, [start, stop])), 1.0)
-    if (stop != end).any():
-        _line(made, RayLine(Part.BLOCKED, 0, 0, strokes(frame, [stop, end])), 1.0)
+def draw_shadow_ray(made: Pen, frame: Frame, tree: RayTree, ray: int, place: int) -> None:
+    """Draw one of the shadow rays of a ray."""
+    for line in _shadow_lines(frame, tree, ray, np.array([place])):
+        _line(made, line, 1.0)
 
 
 def _points(made: Pen, tree: RayTree, frame: Frame, chosen: RayRow | None, further: bool) -> None:
