@@ -9,13 +9,13 @@ of.  What other pixels add to that before modes are set is taken from the frame.
 
 from __future__ import annotations
 
-import ast
 import inspect
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from types import FrameType, FunctionType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -40,12 +40,17 @@ if TYPE_CHECKING:
     from tracer.frame import Frame
     from tracer.renderer import Renderer
 
+_STEPPED = {one.py_func.__code__ for one in (
+    reference.compare_pixel, reference._test_one, reference.reached_by_light, reference.set_shadow_modes_of,
+    reference.set_occlusion_mode_of)}  # fmt: skip
+_HITS_ALONE = hits_alone.py_func.__code__
 FIRST, END = "# --- §2.3", "# --- shading"
 """Where the text begins in the module, and what comes after it."""
 SECTIONS = {"2.3": "occlusion testing", "2.4": "shadow testing", "2.5": "shadow-mode setting",
             "2.6": "occlusion-mode setting"}  # fmt: skip
 OTHERS = "From here on with what the frame's other pixels have found."
 _MODES = {"occlusion": OcclusionMode, "mode": OcclusionMode, "shadow": ShadowMode, "found": ShadowMode}
+_NAME = re.compile(r"([A-Za-z_][\w.]*)(?:\[([^\]]*)\])?")
 _PRIMITIVES = ("current", "primitive", "p")  # names of primitives in the text
 
 
@@ -84,8 +89,8 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True)
 class PaperSteps:
-    """The steps of a pixel of a frame; its rays in words; and the modes that the steps leave of each primitive: its
-    occlusion mode and its shadow modes."""
+    """The steps of a pixel of a frame; its rays in words, with their bounces; and the modes that the steps leave: by
+    primitive, its occlusion mode and its shadow modes."""
 
     x: int
     y: int
@@ -98,9 +103,7 @@ class PaperSteps:
     def remark(self) -> str:
         """What is to be known of these steps where the frame has not taken them."""
         own = Method.parse(self.method).kind.name == "paper"
-        return (
-            "" if own else f"Traced by {title_of(self.method)}. These are the steps that the paper's method would take."
-        )
+        return "" if own else f"Traced by {title_of(self.method)}: these are the steps that Paper would take."
 
     def heading(self, step: Step, scene: Scene) -> str:
         """Say what a step's line runs for."""
@@ -122,7 +125,9 @@ def paper_steps(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Can
     if len(work.first):
         raise ValueError(f"{title} keeps modes of cells, and the text speaks of primitives")
     for lamp in np.flatnonzero(np.diff(work.shading.lamps.first) > 1).tolist():
-        raise ValueError(f"the text knows points of light, and {named_light(renderer.scene.lights, lamp)} is a lamp")
+        raise ValueError(
+            f"the text knows points of light, and {named_light(renderer.scene.lights, lamp)} has several samples"
+        )
     return _Run(renderer, frame, x, y, cancelled).steps()
 
 
@@ -130,45 +135,27 @@ def paper_steps(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Can
 
 
 @cache
-def text() -> tuple[tuple[int, str], ...]:
-    """The lines of §2.3 to §2.6, with their numbers in the module."""
-    lines = list(enumerate(inspect.getsource(reference).splitlines(), 1))
-    first, end = (next(i for i, (_, line) in enumerate(lines) if line.startswith(mark)) for mark in (FIRST, END))
-    return tuple(lines[first : end - 2])
+def text() -> dict[int, str]:
+    """The lines of §2.3 to §2.6, by their numbers in the module."""
+    lines = inspect.getsource(reference).splitlines()
+    first, end = (next(i for i, line in enumerate(lines) if line.startswith(mark)) for mark in (FIRST, END))
+    return dict(enumerate(lines[first : end - 2], first + 1))
 
 
-@cache
-def _names() -> dict[int, list[ast.expr]]:
-    """The names that stand in each line of the module, those with indices as one."""
-
-    def names(node: ast.AST) -> list[ast.expr]:
-        match node:
-            case ast.Name() | ast.Attribute() | ast.Subscript():
-                return [node]
-            case ast.If(test=one):
-                return names(one)
-            case ast.For(target=one, iter=other):
-                return names(one) + names(other)
-        return [name for child in ast.iter_child_nodes(node) for name in names(child)]
-
-    statements = (one for one in ast.walk(ast.parse(inspect.getsource(reference))) if isinstance(one, ast.stmt))
-    return {one.lineno: names(one) for one in statements}
-
-
-_compiled = cache(compile)
+_compiled = lru_cache(4096)(compile)
 
 
 def _values(frame: FrameType, line: int) -> dict[str, str]:
     """The local names that stand in a line, with numbers for indices, in words; no index is before the first."""
     found, known = {}, dict(frame.f_locals)
-    for node in _names()[line]:
-        name, _, indices = ast.unparse(node).partition("[")
-        if indices:
-            numbers = (str(known.get(one, one)) for one in indices[:-1].split(", "))
-            name = f"{name}[{', '.join(numbers)}]"
-        if name.split("[")[0].split(".")[0] in known and "[-" not in name and " -" not in name:
+    for name, index in _NAME.findall(text()[line].partition("#")[0]):
+        if name.partition(".")[0] in known:
+            numbers = ", ".join(str(known.get(one, one)) for one in index.split(", "))
+            name = f"{name}[{numbers}]" if index else name
             with suppress(IndexError):  # a light that has no modes
-                found[name] = in_words(name, eval(_compiled(name, reference.__name__, "eval"), frame.f_globals, known))
+                if "-" not in numbers:
+                    value = eval(_compiled(name, reference.__name__, "eval"), frame.f_globals, known)
+                    found[name] = in_words(name, value)
     return found
 
 
@@ -189,81 +176,14 @@ def in_words(name: str, value: Any) -> str:
 # --- running it --------------------------------------------------------------------------------------
 
 
-class _Recorder:
-    """Runs functions of the text, and notes their lines."""
-
-    def __init__(self) -> None:
-        self.steps: list[Step] = []
-        self._part = Part("2.3")
-        self._begun: dict[FrameType, tuple[int, dict[str, str]]] = {}  # the step that acts, and values before it
-        stepped = (
-            reference.compare_pixel, reference._test_one, reference.reached_by_light, reference.set_shadow_modes_of,
-            reference.set_occlusion_mode_of,
-        )  # fmt: skip
-        self._codes = {one.py_func.__code__ for one in stepped}
-
-    def run(self, part: Part, function: Callable, *arguments: Any) -> None:
-        """Run a function."""
-        self._part, before = part, sys.gettrace()
-        sys.settrace(self._call)
-        try:
-            with np.errstate(all="ignore"):
-                function(*arguments)
-        finally:
-            sys.settrace(before)
-
-    def answer(self, name: str, text: str, *primitives: int) -> None:
-        """Note what the line that acts was answered."""
-        step = self.steps[-1]
-        values, spoken_of = (*step.values, Value(name, text)), (*step.primitives, *primitives)
-        self.steps[-1] = step._replace(values=values, primitives=spoken_of)
-
-    def _call(self, frame: FrameType, _event: str, _argument: Any) -> Callable | None:
-        if frame.f_code is hits_alone.py_func.__code__:
-            frame.f_trace_lines = False
-            return self._hit
-        return self._go_on if frame.f_code in self._codes else None
-
-    def _hit(self, _frame: FrameType, event: str, argument: Any) -> None:
-        if event == "return":
-            self.answer("hits_alone", str(bool(argument)))
-
-    def _go_on(self, frame: FrameType, event: str, argument: Any) -> Callable:
-        if frame in self._begun:
-            self._end(*self._begun.pop(frame), frame)
-        if event == "line":
-            self._begun[frame] = len(self.steps), _values(frame, frame.f_lineno)
-            self.steps.append(Step(self._part, frame.f_lineno))
-        elif isinstance(argument, bool | np.bool_):
-            self.answer("returns", str(bool(argument)))
-        return self._go_on
-
-    def _end(self, place: int, before: dict[str, str], frame: FrameType) -> None:
-        """Note what has become of a line's values, and what it speaks of."""
-        step, values = self.steps[place], []
-        for name, now in _values(frame, step.line).items():
-            was = before.get(name, "")
-            values += [Value(name, now, was if was != now else "")] if now else []
-        pixels, primitives = _spoken_of(frame.f_locals)
-        changes = any(one.before and one.name.startswith(("modes.occlusion", "modes.shadow")) for one in values)
-        values, primitives = [*values, *step.values], [*primitives, *step.primitives]  # answers come last
-        self.steps[place] = Step(step.part, step.line, tuple(values), pixels, tuple(primitives), changes)
-
-
-def _spoken_of(names: Mapping[str, Any]) -> tuple[tuple[Pixel, ...], tuple[int, ...]]:
-    """The pixels and primitives that local names stand for."""
-    pixels = [(names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names]
-    pixels = [one for one in pixels if min(one) >= 0]
-    primitives = [names[name] for name in _PRIMITIVES if name in names]
-    primitives += [names["work"].primitive[y, x] for x, y in pixels[1:]]
-    return tuple(pixels), tuple(int(one) for one in primitives if one != MISS)
-
-
 class _Run:
     """One pixel's run: with the data of the frame, for the primitives that its rays and reference pixels see."""
 
     def __init__(self, renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel) -> None:
-        self._world, self._frame, self._cancelled, self._recorder = renderer.world, frame, cancelled, _Recorder()
+        self._world, self._frame, self._cancelled = renderer.world, frame, cancelled
+        self._steps: list[Step] = []
+        self._part = Part("2.3")
+        self._begun: dict[FrameType, tuple[int, dict[str, str]]] = {}  # the step that acts, and values before it
         self._tree = tree = ray_tree(renderer, frame, x, y, cancelled)
         rays = [tree.rays[number] for number in _in_order(tree, -1)]
         self._rays = [ray for ray in rays if ray.shadows is not None]
@@ -287,7 +207,7 @@ class _Run:
 
     def steps(self) -> PaperSteps:
         """Run the text, section by section."""
-        run, work, modes, frame, tree = self._recorder.run, self._work, self._work.modes, self._frame, self._tree
+        run, work, modes, frame, tree = self._run, self._work, self._work.modes, self._frame, self._tree
         settings, concerned = frame.settings, self._concerned
         run(Part("2.3"), as_python(reference.compare_pixel), work, tree.x, tree.y, settings.symmetric)
         self._test_shadows()
@@ -306,13 +226,13 @@ class _Run:
         for one in concerned:
             run(Part("2.6", one), as_python(reference.set_occlusion_mode_of), work, one, settings.zoom_factor)
         left = {one: (int(modes.occlusion[one]), modes.shadow[one].tolist()) for one in concerned}
-        rays = {ray.number: f"bounce {ray.bounce}, {ray.kind.value} ray" for ray in self._rays}
-        return PaperSteps(tree.x, tree.y, settings.method, tuple(self._recorder.steps), rays, left)
+        rays = {ray.number: f"{ray.kind.value} ray {ray.bounce or ''}".rstrip() for ray in self._rays}
+        return PaperSteps(tree.x, tree.y, settings.method, tuple(self._steps), rays, left)
 
     def _join_others(self, section: str, function: Any) -> None:
         """Note at the head of a function that what other pixels have found counts from here on."""
         line, concerned = function.py_func.__code__.co_firstlineno + 1, tuple(self._concerned)
-        self._recorder.steps.append(Step(Part(section), line, primitives=concerned, note=OTHERS))
+        self._steps.append(Step(Part(section), line, primitives=concerned, note=OTHERS))
 
     def _test_shadows(self) -> None:
         plain = as_python(reference.reached_by_light)
@@ -322,13 +242,53 @@ class _Run:
                 if self._cancelled is not None and self._cancelled():
                     raise Cancelled("cancelled")
                 part = Part("2.4", ray.primitive, light, ray.number)
-                self._recorder.run(part, reached, self._work, ray.primitive, tuple(ray.end), light)
+                self._run(part, reached, self._work, ray.primitive, tuple(ray.end), light)
+
+    def _run(self, part: Part, function: Callable, *arguments: Any) -> None:
+        """Run a function."""
+        self._part, before = part, sys.gettrace()
+        sys.settrace(self._call)
+        try:
+            with np.errstate(all="ignore"):
+                function(*arguments)
+        finally:
+            sys.settrace(before)
+
+    def _answer(self, name: str, text: str, *primitives: int) -> None:
+        """Note what the line that acts was answered."""
+        step = self._steps[-1]
+        values, spoken_of = (*step.values, Value(name, text)), (*step.primitives, *primitives)
+        self._steps[-1] = step._replace(values=values, primitives=spoken_of)
+
+    def _call(self, frame: FrameType, _event: str, _argument: Any) -> Callable | None:
+        return self._go_on if frame.f_code in _STEPPED or frame.f_code is _HITS_ALONE else None
+
+    def _go_on(self, frame: FrameType, event: str, argument: Any) -> Callable:
+        if frame in self._begun:
+            self._end(*self._begun.pop(frame), frame)
+        if event == "return" and isinstance(argument, bool | np.bool_):
+            self._answer("hits_alone" if frame.f_code is _HITS_ALONE else "returns", str(bool(argument)))
+        elif event == "line" and frame.f_code in _STEPPED:
+            self._begun[frame] = len(self._steps), _values(frame, frame.f_lineno)
+            self._steps.append(Step(self._part, frame.f_lineno))
+        return self._go_on
+
+    def _end(self, place: int, before: dict[str, str], frame: FrameType) -> None:
+        """Note what has become of a line's values, and what it speaks of."""
+        step, values = self._steps[place], []
+        for name, now in _values(frame, step.line).items():
+            was = before.get(name, "")
+            values += [Value(name, now, was if was != now else "")] if now else []
+        pixels, primitives = _spoken_of(frame.f_locals)
+        changes = any(one.before and one.name.startswith(("modes.occlusion", "modes.shadow")) for one in values)
+        told, spoken_of = (*values, *step.values), (*primitives, *step.primitives)  # answers come last
+        self._steps[place] = Step(step.part, step.line, told, pixels, spoken_of, changes)
 
     def _blocked(self, _world: Any, ray: Any, which: int, _cost: Any) -> bool:
         """Ask the frame's world what is in the way."""
         found, _ = self._world.occluders_each(ray_batch([ray[:3]], [ray[3:6]], ray.t_min, ray.t_max), which)
         by = int(found[0])
-        self._recorder.answer("_blocked", "False" if by == MISS else f"True, by {by}", *[by] * (by != MISS))
+        self._answer("_blocked", "False" if by == MISS else f"True, by {by}", *[by] * (by != MISS))
         return by != MISS
 
 
@@ -337,3 +297,12 @@ def _in_order(tree: RayTree, parent: int) -> Iterator[int]:
     for number in tree.children.get(parent, ()):
         yield number
         yield from _in_order(tree, number)
+
+
+def _spoken_of(names: Mapping[str, Any]) -> tuple[tuple[Pixel, ...], tuple[int, ...]]:
+    """The pixels and primitives that local names stand for."""
+    pixels = [(names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names]
+    pixels = [one for one in pixels if min(one) >= 0]
+    primitives = [names[name] for name in _PRIMITIVES if name in names]
+    primitives += [names["work"].primitive[y, x] for x, y in pixels[1:]]
+    return tuple(pixels), tuple(int(one) for one in primitives if one != MISS)

@@ -148,24 +148,21 @@ def _add(tree: Tree, row: RayRow) -> None:
         _add(below, one)
 
 
-# --- the steps of the paper ------------------------------------------------------------------------------
+# --- the reasons and steps as text, and all as JSON ----------------------------------------------------
 
 
 def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> list[str]:
     """Return a line for each step, below what it runs for: its number, its text and its values; `light` leaves out
     shadow rays to others."""
-    source, lines, of = dict(text()), [found.remark] if found.remark else [], ("", "")
+    lines, of = [found.remark] if found.remark else [], ("", "")
     for step in found.steps:
         if light is not None and step.part.light not in (-1, light):
             continue
         if of != (of := (found.heading(step, scene), step.note)):
             lines.append(of[0])
         values = " ".join(filter(None, (step.note, ", ".join(map(str, step.values)))))
-        lines.append(f"{step.line:5} {source[step.line]:{_TEXT}}  {values}".rstrip())
+        lines.append(f"{step.line:5} {text()[step.line]:{_TEXT}}  {values}".rstrip())
     return lines
-
-
-# --- the reasons as text, and all as JSON --------------------------------------------------------------
 
 
 def why_lines(found: Why, scene: Scene, light: int | None = None) -> list[str]:

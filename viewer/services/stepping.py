@@ -32,7 +32,7 @@ def run_text(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Callab
 
 class Stepping:
     """`runs` has the steps of each frame, and what was seen in it; the step that is shown is number `place` of number
-    `frame`.  `problem` says why there are none, `shown` that somebody looks."""
+    `frame`.  `problem` says why there are none, `shown` that somebody looks, `wanted` what to do in the next frame."""
 
     def __init__(self, selection: Selection, query: Ask, trace_again: Callable[[], None]) -> None:
         self._selection, self._query, self._trace_again = selection, query, trace_again
@@ -42,7 +42,7 @@ class Stepping:
 
     def _forget(self, problem: str, taken: Frame | None) -> None:
         self._newest, self._taken = Newest(), taken  # the frame that was run last
-        self._wanted: Callable[[], None] | None = None  # what is done in the next frame, once it is there
+        self.wanted: Callable[[], None] | None = None
         self.runs: list[tuple[Seen, PaperSteps]] = []
         self.frame = self.place = 0
         self.shown, self.problem = False, problem
@@ -75,10 +75,10 @@ class Stepping:
             return
         self._taken = frame
         before, run = [(seen, steps.method) for seen, steps in self.runs[-1:]], (seen_of(frame), found)
-        if self._wanted is not None or fresh or before != [(run[0], found.method)]:
+        if self.wanted is not None or fresh or before != [(run[0], found.method)]:
             self.runs = [*self.runs[1 - MOST_KEPT :], run]
             self.frame, self.place = len(self.runs) - 1, 0
-            wanted, self._wanted = self._wanted, None
+            wanted, self.wanted = self.wanted, None
             if wanted is not None:
                 wanted()
         elif len(self.runs) < MOST_KEPT:
@@ -89,19 +89,10 @@ class Stepping:
         """The steps of the frame that one is in."""
         return self.runs[self.frame][1] if self.runs else None
 
-    @property
-    def step(self) -> Step | None:
-        """The step that is shown."""
-        return self.now.steps[self.place] if self.now is not None else None
-
-    @property
-    def waits(self) -> bool:
-        """Whether the next frame is on its way."""
-        return self._wanted is not None
-
-    def is_of(self, frame: Frame) -> bool:
-        """Whether the step that is shown speaks of what this frame shows."""
-        return self.shown and bool(self.runs) and self.runs[self.frame][0] == seen_of(frame)
+    def step_in(self, frame: Frame) -> Step | None:
+        """The step that is shown, if it speaks of what this frame shows."""
+        there = self.shown and self.now is not None and self.runs[self.frame][0] == seen_of(frame)
+        return self.now.steps[self.place] if there and self.now is not None else None
 
     def go(self, by: int) -> None:
         """Go a step on or back, also into the frame after this one, or before it."""
@@ -129,7 +120,7 @@ class Stepping:
     def _go_on(self, there: Callable[[], None]) -> None:
         """Go to the first step of the next frame, once it is there, and do something there."""
         if self.frame == len(self.runs) - 1:
-            self._wanted = there
+            self.wanted = there
             self._trace_again()
         else:
             self.frame, self.place = self.frame + 1, 0

@@ -102,20 +102,13 @@ def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2,
     return middle, (max(made.pixel[0], em(_SIDE)), max(made.pixel[1], em(_SIDE)))
 
 
-# --- a step of the paper ----------------------------------------------------------------------------
-
-
 def _step(ui: Ui, made: Pen, frame: Frame) -> None:
-    """The pixels, the primitives and the shadow ray that the line of the paper's text speaks of."""
-    step, tree = ui.controller.stepping.step, ui.controller.inspector.tree
-    if step is None or not ui.controller.stepping.is_of(frame):
-        return
-    for number in dict.fromkeys(step.primitives[:_MOST_NAMED]):
+    """The pixels and primitives that the line of the paper's text speaks of."""
+    step = ui.controller.stepping.step_in(frame)
+    for number in dict.fromkeys(step.primitives[:_MOST_NAMED] if step is not None else ()):
         _outline(ui, made, frame, number, _STEPPED, f"stepped {number}")
-    for number, pixel in enumerate(step.pixels):
+    for number, pixel in enumerate(step.pixels if step is not None else ()):
         made.square(*_square_of(made, frame, pixel), _STEPPED if number else WHITE)
-    if tree is not None and step.part.light >= 0:
-        rays.draw_shadow_ray(made, frame, tree, step.part.ray, step.part.light)
 
 
 # --- what is selected -------------------------------------------------------------------------------
