@@ -73,7 +73,7 @@ class Stepping:
         if isinstance(found, str):
             self._forget(found, frame)
             return
-        self._taken = frame
+        self._taken, self.problem = frame, ""
         before, run = [(seen, steps.method) for seen, steps in self.runs[-1:]], (seen_of(frame), found)
         if self.wanted is not None or fresh or before != [(run[0], found.method)]:
             self.runs = [*self.runs[1 - MOST_KEPT :], run]
