@@ -152,7 +152,7 @@ def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
-    pages = ("viewer", "command-line", "sweeps", "shrink", "methods", "results")
+    pages = ("viewer", "command-line", "sweeps", "shrink", "steps", "methods", "results")
     for page in (README, *(DOCS / f"{name}.md" for name in pages)):
         named = set(re.findall(r"`[^`\n]*?(--[a-z-]+)", page.read_text()))
         assert named <= known, page
