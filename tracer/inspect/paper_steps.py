@@ -217,10 +217,8 @@ class _Run:
         self._join_others("2.5", reference.set_shadow_modes)
         for one in concerned:
             run(Part("2.5", one), as_python(reference.set_shadow_modes_of), work, one)
-        seen, words = (work.world, work.camera, work.primitive), np.zeros_like(frame.modes)
-        occlusion_testing(
-            *seen, primitives_are_units(), work.primitive, settings.symmetric, 0, frame.height, words, work.occluded
-        )
+        seen = work.world, work.camera, work.primitive, primitives_are_units(), work.primitive, settings.symmetric
+        occlusion_testing(*seen, 0, frame.height, np.zeros_like(frame.modes), work.occluded)
         modes.pixel_count[concerned] = frame.pixel_count[concerned]
         self._join_others("2.6", reference.set_occlusion_modes)
         for one in concerned:

@@ -81,11 +81,11 @@ def run(given: Namespace) -> int:
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
             frame = renderer.render(earlier.time, earlier.camera, work.cancelled)
-            modes = frame.modes
             if given.steps:
                 stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
             were, places = places, scene.light_positions(earlier.time)
-            origins.add(done, modes, None if were is None else (were != places).any(axis=1))  # lights that have moved
+            moved = None if were is None else (were != places).any(axis=1)  # lights
+            origins.add(done, frame.modes, moved)
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, given.camera, work.cancelled)
         if given.steps:
