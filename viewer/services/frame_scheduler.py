@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
+from numpy.typing import NDArray
+
 from tracer.frame import Frame
 from tracer.inspect.one_light import with_light
 from tracer.renderer import Renderer
@@ -68,8 +70,8 @@ class FrameScheduler:
         return traced
 
     def record_light(self) -> None:
-        """Have the chosen light recorded for the newest frame, where the view needs it and the frame lacks it, as there
-        are too many lights to record all of them in every frame."""
+        """Have what the view shows found for the newest frame, where the frame lacks it: the chosen light, as there
+        are too many lights to record all of them in every frame, or what views ask the renderer for."""
         frame, draw = self.frame, self.inputs.state.draw
         if frame is None or self.inputs.run is not None or draw.light >= frame.lights:
             return
@@ -80,6 +82,11 @@ class FrameScheduler:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
                 frame = replace(frame, asked=found.asked, reached=found.reached, only_light=draw.light)
                 self.traced = replace(self.traced, frame=frame)
+        view = draw.view.declared
+        if view.asks_renderer and view.can_ask(frame) and not view.can_draw(frame, draw.light):
+            asked = self._thread.query(_asked, frame, draw.view, draw.light)
+            if asked.done() and not asked.cancelled() and asked.exception() is None and self.traced is not None:
+                self.traced = replace(self.traced, frame=replace(frame, layers=frame.layers | asked.result()))
 
     # --- what is forgotten, and traced again --------------------------------------------------------
 
@@ -287,8 +294,9 @@ class FrameScheduler:
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
         if draw.view is view:
             return title
-        settings = self.inputs.settings
-        comes = settings.record_fates if draw.view.records is Record.FATES else draw.view.records is not None
+        settings, asks = self.inputs.settings, self.frame is not None and draw.view.declared.can_ask(self.frame)
+        comes = asks or draw.view.records is not None
+        comes = settings.record_fates if draw.view.records is Record.FATES else comes
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
@@ -296,6 +304,15 @@ class FrameScheduler:
 
 def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:
     return with_light(renderer, frame, light)
+
+
+def _asked(
+    renderer: Renderer, frame: Frame, view: View, light: int, cancelled: Callable[[], bool]
+) -> dict[str, NDArray]:
+    try:
+        return view.declared.ask(renderer, frame, light, cancelled)
+    except LookupError:  # it traces another frame, which will be asked about
+        return {}
 
 
 def _what_freezes(state: ViewState) -> object:

@@ -101,6 +101,8 @@ def trace(
     recorded |= {one.value: True for one in records}
     renderer.settings = replace(settings, modes=modes, **recorded)
     frame = renderer.render(state.time, state.camera, cancelled)
+    if view.asks_renderer and view.declared.can_ask(frame):
+        frame.layers |= view.declared.ask(renderer, frame, state.draw.light, cancelled)
     lacks_light = view.records is Record.LIGHTS and not recorded["record_lights"]
     return with_light(renderer, frame, state.draw.light) if lacks_light else frame
 

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
+import numpy as np
+
+from tracer.culling.fate import FATE, Fate
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from tracer.statistics import RayCounts
 from viewer.state import terms
 from viewer.state.savings import InTurn, seconds_of
+from viewer.state.views import REGRET
 from viewer.util.numbers import count, percent, whole_percent
 
 RAYS, WORK, TIME = "Shadow rays", "Work", "Time"
@@ -61,6 +66,25 @@ def rows(frame: Frame) -> list[Row]:
     """Return what there is to say of a frame."""
     s = frame.statistics
     return [row for row in _rows(frame, partial(seconds_of, s)) if row.is_shown]
+
+
+class Regret(NamedTuple):
+    """Shadow rays of primary hits: those that could have been proved though they were traced, all that were traced, and
+    all that were due."""
+
+    rays: int
+    traced: int
+    due: int
+
+
+def regret_of(frame: Frame) -> Regret | None:
+    """Return what a frame has found of its regret, if anybody has asked for it."""
+    found = frame.layers.get(REGRET)
+    if found is None or frame.fates is None:
+        return None
+    fates = frame.fates & FATE
+    traced, due = (int(np.count_nonzero(fates >= least)) for least in (Fate.PARTLY_OCCLUDED, Fate.CULLED))
+    return Regret(int(found[found > 0].sum()), traced, due)
 
 
 def beside(a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
@@ -115,6 +139,12 @@ def _shadow_rays(frame: Frame) -> Iterator[Row]:
     yield term(terms.CANDIDATES_ONLY, shadow.candidates_only, shadow.due)
     yield term(terms.CACHE_HITS, shadow.cache_hits, shadow.due)
     yield term(terms.TRACED, shadow.traced, shadow.due, always=True)
+    regret = regret_of(frame)
+    yield Row(
+        RAYS, "Regret", None if regret is None else regret.rays,
+        "of primary hits: traced, although the smallest cell there could be proved to be lit, or dark; the share is of "
+        "those due, which free saves", None if regret is None else regret.due,
+    )  # fmt: skip
     yield term(terms.PASSED_OVER, shadow.passed_over)
     wrong, by_lights = s.wrong, s.cuts is None
     of_pixels = terms.WRONG_PIXELS if by_lights else terms.BEYOND

@@ -17,7 +17,8 @@ from viewer.util.numbers import count
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
 """What is chosen to see every ray traced, the paper's modes at work, certificates, and whatever is quickest."""
 
-SHOWN_BY = {View.CERTIFICATE: CERTIFIED, View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact"}
+SHOWN_BY = {View.CERTIFICATE: CERTIFIED, View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact",
+            View.SLACK: CERTIFIED, View.REGRET: CERTIFIED}  # fmt: skip
 """Views of what single methods have, and one that has it."""
 
 
@@ -70,6 +71,12 @@ def remark_on(lights: tuple[Light, ...], settings: Settings) -> str:
     return f"{few}." if few else remark(method, len(lights), lamps)
 
 
+def _is_asked(frame: Frame) -> bool:
+    """Return whether certificates of cells are there, or will be, of which the renderer is asked."""
+    method = Method.parse(frame.settings.method)
+    return method.base == CERTIFIED or (method.base == ADAPTIVE and frame.certificates is not None)
+
+
 # --- where there is nothing to see -------------------------------------------------------------------
 
 
@@ -88,7 +95,7 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
     method, decision, drawn = Method.parse(frame.settings.method), frame.statistics.decision, can_draw(frame, view)
     if frame.lights == 0 and (view.of_light or view in SHOWN_BY or view.records is Record.LIGHTS):
         return Missing("The scene has no lights.")
-    if view in SHOWN_BY and not drawn:
+    if view in SHOWN_BY and not drawn and not (view.asks_renderer and _is_asked(frame)):
         if view is View.CERTIFICATE and decision and method.has_certificates and not method.clusters:
             comes = method.adaptive and frame.statistics.certificates > 0 and more
             return Missing(f"{decision}{' More are made and tried while nothing moves.' if comes else ''}", CERTIFIED)

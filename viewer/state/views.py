@@ -5,13 +5,17 @@ lies below the views can ask for a label without knowing how anything is drawn."
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum, StrEnum
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from tracer.frame import Frame
+    from tracer.renderer import Renderer
 
 
 MOST_RECORDED = 1 << 28
@@ -23,6 +27,7 @@ soon and asks for no other frame."""
 
 CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
 CELL_LIGHTS = "cell lights"  # that of methods whose cells know which lights they must look at
+REGRET = "regret"  # what the renderer is asked for
 VOXELS, LIGHT_CUBES = "voxels", "light cubes"  # structures of methods
 
 
@@ -61,6 +66,20 @@ class Declaration:
     shows_clipped: ClassVar[bool] = False
     """Whether it can mark what the screen cuts off of its colours, and may be smoothed where it is enlarged."""
 
+    asks_renderer: ClassVar[bool] = False
+    """Whether the renderer is asked for what it shows of a whole frame, as that takes longer than a frame may."""
+
+    def can_ask(self, frame: Frame) -> bool:
+        """Return whether there will be something to show once the renderer has been asked."""
+        return False
+
+    def ask(
+        self, renderer: Renderer, frame: Frame, light: int, cancelled: Callable[[], bool] | None
+    ) -> dict[str, NDArray]:
+        """Find the layers that the frame lacks.  Raises LookupError where the renderer has begun another frame, and
+        Cancelled."""
+        return {}
+
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         """Return whether the frame holds what it shows, of this light where it is about one."""
         if self.of_modes:
@@ -97,6 +116,8 @@ class View(StrEnum):
     CELL_LIGHTS = "cell-lights"
     FATE = "fate"
     MOVING_SHADOW = "moving-shadow"
+    SLACK = "slack"
+    REGRET = "regret"
 
     # What its file declares can be asked of the name.
     label: str
@@ -110,6 +131,7 @@ class View(StrEnum):
     is_flat: bool
     shows_picture: bool
     shows_clipped: bool
+    asks_renderer: bool
 
     if not TYPE_CHECKING:  # so that other names are found out
 
