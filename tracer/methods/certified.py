@@ -224,7 +224,7 @@ class CertifiedCells(WithStore):
             owner >= 0
             and self.slack.are_provable(np.array([owner], np.int32), [u], [v], np.array([light], np.int32))[0]
         ):
-            return "A cell that is small enough could be proved here."
+            return "Regret: a cell that is small enough can be proved here."
         return ""
 
     def forget(self) -> None:

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
-
-from numpy.typing import NDArray
+from typing import Any
 
 from tracer.frame import Frame
 from tracer.inspect.one_light import with_light
@@ -21,6 +20,7 @@ from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import FramesBefore, RenderRequest, Traced, as_asked, missing_buffers
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
+from viewer.state.methods import can_ask
 from viewer.state.view_state import ViewState
 from viewer.state.views import Record, View, can_draw
 from viewer.views import view_of
@@ -82,8 +82,7 @@ class FrameScheduler:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
                 frame = replace(frame, asked=found.asked, reached=found.reached, only_light=draw.light)
                 self.traced = replace(self.traced, frame=frame)
-        view = draw.view.declared
-        if view.asks_renderer and view.can_ask(frame) and not view.can_draw(frame, draw.light):
+        if can_ask(frame, draw.view) and not can_draw(frame, draw.view, draw.light):
             asked = self._thread.query(_asked, frame, draw.view, draw.light)
             if asked.done() and not asked.cancelled() and asked.exception() is None and self.traced is not None:
                 self.traced = replace(self.traced, frame=replace(frame, layers=frame.layers | asked.result()))
@@ -294,9 +293,8 @@ class FrameScheduler:
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
         if draw.view is view:
             return title
-        settings, asks = self.inputs.settings, self.frame is not None and draw.view.declared.can_ask(self.frame)
-        comes = asks or draw.view.records is not None
-        comes = settings.record_fates if draw.view.records is Record.FATES else comes
+        settings, asks = self.inputs.settings, self.frame is not None and can_ask(self.frame, draw.view)
+        comes = settings.record_fates if draw.view.records is Record.FATES else asks or draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
@@ -306,11 +304,9 @@ def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callab
     return with_light(renderer, frame, light)
 
 
-def _asked(
-    renderer: Renderer, frame: Frame, view: View, light: int, cancelled: Callable[[], bool]
-) -> dict[str, NDArray]:
+def _asked(renderer: Renderer, frame: Frame, view: View, *rest: Any) -> dict[str, Any]:
     try:
-        return view.declared.ask(renderer, frame, light, cancelled)
+        return view.asks(renderer, frame, *rest) if view.asks is not None else {}
     except LookupError:  # it traces another frame, which will be asked about
         return {}
 

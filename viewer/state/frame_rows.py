@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -68,23 +67,15 @@ def rows(frame: Frame) -> list[Row]:
     return [row for row in _rows(frame, partial(seconds_of, s)) if row.is_shown]
 
 
-class Regret(NamedTuple):
-    """Shadow rays of primary hits: those that could have been proved though they were traced, all that were traced, and
-    all that were due."""
-
-    rays: int
-    traced: int
-    due: int
-
-
-def regret_of(frame: Frame) -> Regret | None:
-    """Return what a frame has found of its regret, if anybody has asked for it."""
+def regret_of(frame: Frame) -> int | None:
+    """Return how many rays of a frame were traced that could be proved, if anybody has asked for that."""
     found = frame.layers.get(REGRET)
-    if found is None or frame.fates is None:
-        return None
-    fates = frame.fates & FATE
-    traced, due = (int(np.count_nonzero(fates >= least)) for least in (Fate.PARTLY_OCCLUDED, Fate.CULLED))
-    return Regret(int(found[found > 0].sum()), traced, due)
+    return None if found is None else int(found[found > 0].sum())
+
+
+def primary_due(frame: Frame) -> int:
+    """Return how many shadow rays of primary hits are due, 0 unless the frame has recorded what became of them."""
+    return 0 if frame.fates is None else int(np.count_nonzero(frame.fates & FATE >= Fate.CULLED))
 
 
 def beside(a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
@@ -139,12 +130,8 @@ def _shadow_rays(frame: Frame) -> Iterator[Row]:
     yield term(terms.CANDIDATES_ONLY, shadow.candidates_only, shadow.due)
     yield term(terms.CACHE_HITS, shadow.cache_hits, shadow.due)
     yield term(terms.TRACED, shadow.traced, shadow.due, always=True)
-    regret = regret_of(frame)
-    yield Row(
-        RAYS, "Regret", None if regret is None else regret.rays,
-        "of primary hits: traced, although the smallest cell there could be proved to be lit, or dark; the share is of "
-        "those due, which free saves", None if regret is None else regret.due,
-    )  # fmt: skip
+    could = "of primary hits: traced, although the smallest cell there can be proved; a share of those due, the ceiling"
+    yield Row(RAYS, "Regret", regret_of(frame), could, primary_due(frame))
     yield term(terms.PASSED_OVER, shadow.passed_over)
     wrong, by_lights = s.wrong, s.cuts is None
     of_pixels = terms.WRONG_PIXELS if by_lights else terms.BEYOND

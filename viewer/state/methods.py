@@ -71,10 +71,11 @@ def remark_on(lights: tuple[Light, ...], settings: Settings) -> str:
     return f"{few}." if few else remark(method, len(lights), lamps)
 
 
-def _is_asked(frame: Frame) -> bool:
-    """Return whether certificates of cells are there, or will be, of which the renderer is asked."""
-    method = Method.parse(frame.settings.method)
-    return method.base == CERTIFIED or (method.base == ADAPTIVE and frame.certificates is not None)
+def can_ask(frame: Frame, view: View) -> bool:
+    """Return whether the renderer can be asked for what a view shows: of a whole frame with certificates of cells."""
+    by_cells = Method.parse(frame.settings.method).base in (CERTIFIED, ADAPTIVE) and frame.certificates is not None
+    recorded = view.records is None or frame.fates is not None
+    return view.asks is not None and frame.statistics.part >= 1.0 and by_cells and recorded
 
 
 # --- where there is nothing to see -------------------------------------------------------------------
@@ -95,7 +96,7 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
     method, decision, drawn = Method.parse(frame.settings.method), frame.statistics.decision, can_draw(frame, view)
     if frame.lights == 0 and (view.of_light or view in SHOWN_BY or view.records is Record.LIGHTS):
         return Missing("The scene has no lights.")
-    if view in SHOWN_BY and not drawn and not (view.asks_renderer and _is_asked(frame)):
+    if view in SHOWN_BY and not drawn and not (view.asks is not None and method.base == CERTIFIED):
         if view is View.CERTIFICATE and decision and method.has_certificates and not method.clusters:
             comes = method.adaptive and frame.statistics.certificates > 0 and more
             return Missing(f"{decision}{' More are made and tried while nothing moves.' if comes else ''}", CERTIFIED)

@@ -12,10 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from tracer.frame import Frame
-    from tracer.renderer import Renderer
 
 
 MOST_RECORDED = 1 << 28
@@ -66,19 +63,9 @@ class Declaration:
     shows_clipped: ClassVar[bool] = False
     """Whether it can mark what the screen cuts off of its colours, and may be smoothed where it is enlarged."""
 
-    asks_renderer: ClassVar[bool] = False
-    """Whether the renderer is asked for what it shows of a whole frame, as that takes longer than a frame may."""
-
-    def can_ask(self, frame: Frame) -> bool:
-        """Return whether there will be something to show once the renderer has been asked."""
-        return False
-
-    def ask(
-        self, renderer: Renderer, frame: Frame, light: int, cancelled: Callable[[], bool] | None
-    ) -> dict[str, NDArray]:
-        """Find the layers that the frame lacks.  Raises LookupError where the renderer has begun another frame, and
-        Cancelled."""
-        return {}
+    asks: ClassVar[Callable[..., dict[str, Any]] | None] = None
+    """What finds the layers that it shows of a whole frame with certificates of cells, as that takes longer than a
+    frame may: of the renderer, the frame, a light, and `cancelled()`.  It may raise LookupError and Cancelled."""
 
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         """Return whether the frame holds what it shows, of this light where it is about one."""
@@ -131,7 +118,7 @@ class View(StrEnum):
     is_flat: bool
     shows_picture: bool
     shows_clipped: bool
-    asks_renderer: bool
+    asks: Callable[..., dict[str, Any]] | None
 
     if not TYPE_CHECKING:  # so that other names are found out
 

@@ -17,7 +17,6 @@ from tracer.frame import Frame
 from tracer.method import Method, title_of
 from viewer.state import terms
 from viewer.state.draw_options import DrawOptions
-from viewer.state.methods import ADAPTIVE, CERTIFIED
 from viewer.state.palette import GREY, Class
 from viewer.state.views import has_modes_of_cells
 from viewer.util.numbers import count, percent
@@ -103,12 +102,6 @@ class ModeView(ClassView):
         entries = self.entries(self.counted(frame, draw), [count(n) for n in units])
         named = "cells" if has_modes_of_cells(frame) else "primitives"
         return Legend(title, ("pixels", named), (*entries, *at_rest(frame)), facts=facts)
-
-
-def has_cells_of_triangles(frame: Frame) -> bool:
-    """Return whether a whole frame has certificates of cells, by the method certified or by auto."""
-    whole, base = frame.statistics.part >= 1.0, Method.parse(frame.settings.method).base
-    return whole and frame.certificates is not None and base in (CERTIFIED, ADAPTIVE)
 
 
 def filled_in(frame: Frame) -> tuple[Note, ...]:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import numpy as np
 
-from numpy.typing import NDArray
-
+from tracer.culling.fate import FATE, Fate
 from tracer.frame import Frame
 from tracer.inspect.proofs_at_pixels import regret_at_pixels
-from tracer.renderer import Renderer
-from viewer.state.frame_rows import regret_of
+from viewer.state.frame_rows import primary_due, regret_of
 from viewer.state.views import REGRET, Record
 from viewer.util.numbers import count, percent
 from viewer.views.base import Lines
-from viewer.views.kinds import CountView, has_cells_of_triangles
+from viewer.views.kinds import CountView
 from viewer.views.legend import Entry, fact
+
+_CEILING = "of the shadow rays of primary hits that are due: all of these are saved by the method free, the ceiling"
 
 
 class Regret(CountView):
@@ -25,28 +25,22 @@ class Regret(CountView):
         "there could be proved to be lit, or dark: what a better method could still save."
     )
     records = Record.FATES
-    asks_renderer = True
     shows = REGRET
+    asks = staticmethod(
+        lambda renderer, frame, light, cancelled: {REGRET: regret_at_pixels(renderer, frame, cancelled)}
+    )
     what = "rays traced that could be proved"
     heading = "Rays traced that could be proved"
     each = "shadow rays of primary hits, of the first sample of each pixel"
 
-    def can_ask(self, frame: Frame) -> bool:
-        return has_cells_of_triangles(frame) and frame.fates is not None
-
-    def ask(
-        self, renderer: Renderer, frame: Frame, light: int, cancelled: Callable[[], bool] | None
-    ) -> dict[str, NDArray]:
-        return {REGRET: regret_at_pixels(renderer, frame, cancelled)}
-
     def facts(self, frame: Frame) -> tuple[Entry, ...]:
-        found = regret_of(frame)
-        assert found is not None, "it can be drawn"
-        of_due = "of all shadow rays of primary hits that are due, which free saves"
+        assert frame.fates is not None, "it can be drawn"
+        rays, due = regret_of(frame), primary_due(frame)
+        traced = int(np.count_nonzero(frame.fates & FATE == Fate.TRACED))
         return (
-            fact("in all", f"{count(found.rays)} ({percent(found.rays, found.traced)} of those traced)"),
-            fact("of what free saves", percent(found.rays, found.due), of_due),
-            fact("saved so far", percent(found.due - found.traced, found.due), of_due),
+            fact("in all", f"{count(rays or 0)} ({percent(rays or 0, traced)} of those traced)"),
+            fact("of what free saves", percent(rays or 0, due), _CEILING),
+            fact("untraced by now", percent(due - traced, due), _CEILING),
         )
 
     def known_words(self, frame: Frame, found: int, x: int, y: int) -> Lines:
