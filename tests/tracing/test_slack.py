@@ -131,9 +131,8 @@ def test_nothing_is_regretted_where_all_is_proved() -> None:
     assert frame.statistics.shadow.due > 300 and frame.statistics.shadow.traced == 0
     regret = regret_at_pixels(renderer, frame)
     assert regret.max() == 0 and (regret == 0).any()
-    with pytest.raises(LookupError, match="another frame"):
-        renderer.render()
-        slack_at_pixels(renderer, frame, 0)
+    with pytest.raises(LookupError, match="no certificates"):
+        slack_at_pixels(tracer.Renderer(made, SETTINGS), frame, 0)
 
 
 def test_points_lie_in_the_smallest_cells_that_are_told() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
 
 from tracer.frame import Frame
 from tracer.inspect.one_light import with_light
@@ -17,10 +17,11 @@ from tracer.renderer import Renderer
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
 from viewer.services.frame_inputs import FrameInputs
 from viewer.services.refinement import LampSamples, Refinement
-from viewer.services.render_request import FramesBefore, RenderRequest, Traced, as_asked, missing_buffers
+from viewer.services.render_request import FramesBefore, Newest, RenderRequest, Traced, as_asked, missing_buffers
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
 from viewer.state.methods import can_ask
+from viewer.state.picking import same_place
 from viewer.state.view_state import ViewState
 from viewer.state.views import Record, View, can_draw
 from viewer.views import view_of
@@ -50,6 +51,8 @@ class FrameScheduler:
         self._asked: RenderRequest | None = None
         self._new = False  # the scene
         self._failed: RenderRequest | None = None
+        self._newest = Newest()  # layers that the renderer was asked for
+        self._used: _Layers | None = None
 
     # --- what is given ----------------------------------------------------------------------------
 
@@ -82,10 +85,18 @@ class FrameScheduler:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
                 frame = replace(frame, asked=found.asked, reached=found.reached, only_light=draw.light)
                 self.traced = replace(self.traced, frame=frame)
-        if can_ask(frame, draw.view) and not can_draw(frame, draw.view, draw.light):
-            asked = self._thread.query(_asked, frame, draw.view, draw.light)
-            if asked.done() and not asked.cancelled() and asked.exception() is None and self.traced is not None:
-                self.traced = replace(self.traced, frame=replace(frame, layers=frame.layers | asked.result()))
+        if can_ask(frame, draw.view):
+            self._newest.take(self._thread.query(_asked, frame, draw.view, draw.light))
+            self._show_layers(frame, self._newest.answer)
+
+    def _show_layers(self, frame: Frame, found: _Layers | None) -> None:
+        """Give the newest frame what was found last: for the frame before, until its own is there."""
+        draw = self.inputs.state.draw
+        if found is None or found.of != (draw.view, draw.light) or not same_place(found.frame, frame):
+            return
+        if self.traced is not None and (found is not self._used or not can_draw(frame, draw.view, draw.light)):
+            self.traced = replace(self.traced, frame=replace(frame, layers=frame.layers | found.layers))
+            self._used = found
 
     # --- what is forgotten, and traced again --------------------------------------------------------
 
@@ -304,11 +315,20 @@ def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callab
     return with_light(renderer, frame, light)
 
 
-def _asked(renderer: Renderer, frame: Frame, view: View, *rest: Any) -> dict[str, Any]:
+class _Layers(NamedTuple):
+    """What the renderer has found of a frame for a view and a light."""
+
+    of: tuple[View, int]
+    frame: Frame
+    layers: dict[str, Any]
+
+
+def _asked(renderer: Renderer, frame: Frame, view: View, light: int, cancelled: Callable[[], bool]) -> _Layers | None:
     try:
-        return view.asks(renderer, frame, *rest) if view.asks is not None else {}
-    except LookupError:  # it traces another frame, which will be asked about
-        return {}
+        assert view.asks is not None, "it can be asked"
+        return _Layers((view, light), frame, view.asks(renderer, frame, light, cancelled))
+    except LookupError:  # lights have moved on in another frame, which will be asked about
+        return None
 
 
 def _what_freezes(state: ViewState) -> object:
