@@ -84,8 +84,7 @@ def run(given: Namespace) -> int:
             if given.steps:
                 stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
             were, places = places, scene.light_positions(earlier.time)
-            moved = None if were is None else (were != places).any(axis=1)  # lights
-            origins.add(done, frame.modes, moved)
+            origins.add(done, frame.modes, None if were is None else (were != places).any(axis=1))  # moved lights
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, given.camera, work.cancelled)
         if given.steps:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tracer.culling.modes import DYNAMIC, INIT
 from tracer.frame import Frame
 from tracer.inspect.paper_steps import PaperSteps, Step, paper_steps
 from tracer.renderer import Renderer
@@ -65,17 +66,19 @@ class Stepping:
         self._newest.take(self._query(run_text, traced.frame, *at))
         answer: Answer | None = self._newest.answer
         if answer is not None and answer[1] is not None and is_same_picture(answer[0], traced.frame):
-            self._take(answer[0], answer[1], traced.fresh)
+            self._take(answer[0], answer[1])
 
-    def _take(self, frame: Frame, found: PaperSteps | str, fresh: bool) -> None:
-        """Add the steps of a frame, and go there if that is wanted, or if it is another view; `fresh`: nothing was
-        known of modes."""
+    def _take(self, frame: Frame, found: PaperSteps | str) -> None:
+        """Add the steps of a frame, and go there if that is wanted, if it is another view, or if modes were forgotten
+        before it."""
         if isinstance(found, str):
             self._forget(found, frame)
             return
         self._taken, self.problem = frame, ""
         before, run = [(seen, steps.method) for seen, steps in self.runs[-1:]], (seen_of(frame), found)
-        if self.wanted is not None or fresh or before != [(run[0], found.method)]:
+        known = frame.modes_before[list(found.modes)].tolist()
+        forgotten = INIT in known and set(known) <= {INIT, DYNAMIC}
+        if self.wanted is not None or forgotten or before != [(run[0], found.method)]:
             self.runs = [*self.runs[1 - MOST_KEPT :], run]
             self.frame, self.place = len(self.runs) - 1, 0
             wanted, self.wanted = self.wanted, None
