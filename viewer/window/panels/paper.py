@@ -26,9 +26,9 @@ def commands(ui: Ui) -> list[Command]:
     return [
         Command("Step through the paper", "Culling", lambda: ui.show_panel(PAPER), "F6", separated=True, also="debug",
                 tip="the paper's text, run line by line for the clicked pixel"),
-        Command("Line before", "Culling", lambda: s.go(-1), "F7", enabled=there, repeats=True,
+        Command("Step to the line before", "Culling", lambda: s.go(-1), "F7", enabled=there, repeats=True,
                 tip="back in the paper's text, also into the frame before"),
-        Command("Next line", "Culling", lambda: s.go(1), "F8", enabled=there, repeats=True,
+        Command("Step to the next line", "Culling", lambda: s.go(1), "F8", enabled=there, repeats=True,
                 tip="on in the paper's text; after its last line the same frame is traced once more"),
         Command("Next change of a mode", "Culling", s.go_to_change, "F9", enabled=there,
                 tip="to the next line that changes a mode, else to the end of the frame, and on into the next"),
@@ -47,7 +47,7 @@ def show(ui: Ui) -> None:
         if other and c.runs.current is None and imgui.button(f"Use {title_of('paper')}"):
             c.settings.change(method=with_base(c.session.settings.method, "paper"))
     else:
-        for name, icon in (("Line before", icons.ICON_FA_BACKWARD_STEP), ("Next line", icons.ICON_FA_FORWARD_STEP),
+        for name, icon in (("Step to the line before", icons.ICON_FA_BACKWARD_STEP), ("Step to the next line", icons.ICON_FA_FORWARD_STEP),
                            ("Next change of a mode", icons.ICON_FA_FORWARD_FAST)):  # fmt: skip
             menus.button(ui, name, icon, width=_BUTTON)
             imgui.same_line()
