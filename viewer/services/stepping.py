@@ -61,12 +61,15 @@ class Stepping:
         self.shown, self._watched = self._watched, False
         if not self.shown or not idle or traced is None or not traced.whole or at is None:
             return
-        if self._taken is not None and is_same_picture(self._taken, traced.frame):
+        if self._has_taken(traced.frame):
             return
         self._newest.take(self._query(run_text, traced.frame, *at))
-        answer: Answer | None = self._newest.answer
-        if answer is not None and answer[1] is not None and is_same_picture(answer[0], traced.frame):
+        answer: Answer | None = self._newest.answer  # of the frame before, perhaps
+        if answer is not None and answer[1] is not None and not self._has_taken(answer[0]):
             self._take(answer[0], answer[1])
+
+    def _has_taken(self, frame: Frame) -> bool:
+        return self._taken is not None and is_same_picture(self._taken, frame)
 
     def _take(self, frame: Frame, found: PaperSteps | str) -> None:
         """Add the steps of a frame, and go there if that is wanted, if it is another view, or if modes were forgotten

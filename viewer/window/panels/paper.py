@@ -16,6 +16,7 @@ from viewer.window.ui import Ui
 from viewer.window.widgets import QUIET, clipped, em, paragraph, write
 
 PAPER = "Paper"
+_BACK, _ON, _CHANGE = "Step to the line before", "Step to the next line", "Next change of a mode"
 _INDENT, _BUTTON, _TEXT = 0.32, 2.0, 0.54  # ems: of a blank at a line's beginning, of a button; of the width for text
 
 
@@ -26,11 +27,11 @@ def commands(ui: Ui) -> list[Command]:
     return [
         Command("Step through the paper", "Culling", lambda: ui.show_panel(PAPER), "F6", separated=True, also="debug",
                 tip="the paper's text, run line by line for the clicked pixel"),
-        Command("Step to the line before", "Culling", lambda: s.go(-1), "F7", enabled=there, repeats=True,
+        Command(_BACK, "Culling", lambda: s.go(-1), "F7", enabled=there, repeats=True,
                 tip="back in the paper's text, also into the frame before"),
-        Command("Step to the next line", "Culling", lambda: s.go(1), "F8", enabled=there, repeats=True,
+        Command(_ON, "Culling", lambda: s.go(1), "F8", enabled=there, repeats=True,
                 tip="on in the paper's text; after its last line the same frame is traced once more"),
-        Command("Next change of a mode", "Culling", s.go_to_change, "F9", enabled=there,
+        Command(_CHANGE, "Culling", s.go_to_change, "F9", enabled=there,
                 tip="to the next line that changes a mode, else to the end of the frame, and on into the next"),
     ]  # fmt: skip
 
@@ -47,8 +48,8 @@ def show(ui: Ui) -> None:
         if other and c.runs.current is None and imgui.button(f"Use {title_of('paper')}"):
             c.settings.change(method=with_base(c.session.settings.method, "paper"))
     else:
-        for name, icon in (("Step to the line before", icons.ICON_FA_BACKWARD_STEP), ("Step to the next line", icons.ICON_FA_FORWARD_STEP),
-                           ("Next change of a mode", icons.ICON_FA_FORWARD_FAST)):  # fmt: skip
+        jumps = icons.ICON_FA_BACKWARD_STEP, icons.ICON_FA_FORWARD_STEP, icons.ICON_FA_FORWARD_FAST
+        for name, icon in zip((_BACK, _ON, _CHANGE), jumps, strict=True):
             menus.button(ui, name, icon, width=_BUTTON)
             imgui.same_line()
         imgui.align_text_to_frame_padding()
