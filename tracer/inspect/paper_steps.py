@@ -48,7 +48,6 @@ FIRST, END = "# --- §2.3", "# --- shading"
 """Where the text begins in the module, and what comes after it."""
 SECTIONS = {"2.3": "occlusion testing", "2.4": "shadow testing", "2.5": "shadow-mode setting",
             "2.6": "occlusion-mode setting"}  # fmt: skip
-OTHERS = "From here on with what the frame's other pixels have found."
 _MODES = {"occlusion": OcclusionMode, "mode": OcclusionMode, "shadow": ShadowMode, "found": ShadowMode}
 _NAME = re.compile(r"([A-Za-z_][\w.]*)(?:\[([^\]]*)\])?")
 _PRIMITIVES = ("current", "primitive", "p")  # names of primitives in the text
@@ -182,11 +181,9 @@ class _Run:
     def __init__(self, renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel) -> None:
         self._world, self._frame, self._cancelled = renderer.world, frame, cancelled
         self._steps: list[Step] = []
-        self._part = Part("2.3")
         self._begun: dict[FrameType, tuple[int, dict[str, str]]] = {}  # the step that acts, and values before it
         self._tree = tree = ray_tree(renderer, frame, x, y, cancelled)
-        rays = [tree.rays[number] for number in _in_order(tree, -1)]
-        self._rays = [ray for ray in rays if ray.shadows is not None]
+        self._rays = [tree.rays[one] for one in _in_order(tree, -1) if tree.rays[one].shadows is not None]
         seen = frame.primitive[[y, y, max(y - 1, 0)], [x, max(x - 1, 0), x]].tolist()
         self._concerned = sorted({*seen, *(ray.primitive for ray in self._rays)} - {MISS})
         lights, work = min(frame.lights, MAX_CULLED_LIGHTS), renderer.work_on(frame)
@@ -229,8 +226,8 @@ class _Run:
 
     def _join_others(self, section: str, function: Any) -> None:
         """Note at the head of a function that what other pixels have found counts from here on."""
-        line, concerned = function.py_func.__code__.co_firstlineno + 1, tuple(self._concerned)
-        self._steps.append(Step(Part(section), line, primitives=concerned, note=OTHERS))
+        line, note = function.py_func.__code__.co_firstlineno + 1, "From here on with what other pixels have found."
+        self._steps.append(Step(Part(section), line, primitives=tuple(self._concerned), note=note))
 
     def _test_shadows(self) -> None:
         plain = as_python(reference.reached_by_light)
@@ -299,8 +296,9 @@ def _in_order(tree: RayTree, parent: int) -> Iterator[int]:
 
 def _spoken_of(names: Mapping[str, Any]) -> tuple[tuple[Pixel, ...], tuple[int, ...]]:
     """The pixels and primitives that local names stand for."""
-    pixels = [(names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names]
-    pixels = [one for one in pixels if min(one) >= 0]
+    pixels = [
+        (names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names and min(names[x], names[y]) >= 0
+    ]
     primitives = [names[name] for name in _PRIMITIVES if name in names]
     primitives += [names["work"].primitive[y, x] for x, y in pixels[1:]]
     return tuple(pixels), tuple(int(one) for one in primitives if one != MISS)

@@ -31,7 +31,6 @@ from viewer.cli.console import working
 from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
 from viewer.services.inspector import with_origins
 
-_TEXT = 72  # columns of a step for its text, before its values
 MOST_LIGHTS = 3  # that are named before a sentence that they share; of more, the number is said
 EPILOG = """\
 examples:
@@ -160,7 +159,7 @@ def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> li
         if of != (of := (found.heading(step, scene), step.note)):
             lines.append(of[0])
         values = " ".join(filter(None, (step.note, ", ".join(map(str, step.values)))))
-        lines.append(f"{step.line:5} {text()[step.line]:{_TEXT}}  {values}".rstrip())
+        lines.append(f"{step.line:5} {text()[step.line]:72}  {values}".rstrip())
     return lines
 
 

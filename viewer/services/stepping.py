@@ -12,7 +12,7 @@ from tracer.frame import Frame
 from tracer.inspect.paper_steps import PaperSteps, Step, paper_steps
 from tracer.renderer import Renderer
 from viewer.services.inspector import Selection
-from viewer.services.render_request import Ask, Newest, Traced, is_same_picture
+from viewer.services.render_request import Ask, Newest, Traced
 from viewer.state.picking import Pick, Seen, seen_of
 
 MOST_KEPT = 16  # frames
@@ -41,8 +41,8 @@ class Stepping:
         self._watched = False
         self._forget("", None)
 
-    def _forget(self, problem: str, taken: Frame | None) -> None:
-        self._newest, self._taken = Newest(), taken  # the frame that was run last
+    def _forget(self, problem: str, taken: object) -> None:
+        self._newest, self._taken = Newest(), taken  # what the frame that was run last sees: all of its samples have it
         self.wanted: Callable[[], None] | None = None
         self.runs: list[tuple[Seen, PaperSteps]] = []
         self.frame = self.place = 0
@@ -61,23 +61,20 @@ class Stepping:
         self.shown, self._watched = self._watched, False
         if not self.shown or not idle or traced is None or not traced.whole or at is None:
             return
-        if self._has_taken(traced.frame):
+        if self._taken is traced.frame.primitive:
             return
         self._newest.take(self._query(run_text, traced.frame, *at))
         answer: Answer | None = self._newest.answer  # of the frame before, perhaps
-        if answer is not None and answer[1] is not None and not self._has_taken(answer[0]):
+        if answer is not None and answer[1] is not None and answer[0].primitive is not self._taken:
             self._take(answer[0], answer[1])
-
-    def _has_taken(self, frame: Frame) -> bool:
-        return self._taken is not None and is_same_picture(self._taken, frame)
 
     def _take(self, frame: Frame, found: PaperSteps | str) -> None:
         """Add the steps of a frame, and go there if that is wanted, if it is another view, or if modes were forgotten
         before it."""
         if isinstance(found, str):
-            self._forget(found, frame)
+            self._forget(found, frame.primitive)
             return
-        self._taken, self.problem = frame, ""
+        self._taken, self.problem = frame.primitive, ""
         before, run = [(seen, steps.method) for seen, steps in self.runs[-1:]], (seen_of(frame), found)
         known = frame.modes_before[list(found.modes)].tolist()
         forgotten = INIT in known and set(known) <= {INIT, DYNAMIC}
