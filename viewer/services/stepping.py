@@ -38,11 +38,12 @@ class Stepping:
     def __init__(self, selection: Selection, query: Ask, trace_again: Callable[[], None]) -> None:
         self._selection, self._query, self._trace_again = selection, query, trace_again
         self._of: Pick | None = None
-        self._watched = False
+        self._watched, self._newest = False, Newest()
         self._forget("", None)
 
     def _forget(self, problem: str, taken: object) -> None:
-        self._newest, self._taken = Newest(), taken  # what the frame that was run last sees: all of its samples have it
+        self._newest.forget()
+        self._taken = taken  # what the frame that was run last sees: all of its samples have it
         self.wanted: Callable[[], None] | None = None
         self.runs: list[tuple[Seen, PaperSteps]] = []
         self.frame = self.place = 0

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 
 import pytest
 
 from tests.viewer.desk import Desk, place_of
+from tests.viewer.fakes import until
+from tracer.scene.model import Cancelled
 from viewer.services import stepping as module
 from viewer.state import navigation
 
@@ -135,3 +138,21 @@ def test_why_there_are_no_steps_is_said(desk: SteppingDesk) -> None:
     c.settings.change(method="certified")
     desk.until(lambda: s.now is not None)
     assert not s.problem and "Paper would take" in s.now.remark
+
+
+def test_a_run_ends_when_another_pixel_is_clicked(desk: SteppingDesk, monkeypatch: pytest.MonkeyPatch) -> None:
+    began, ended = Event(), Event()
+
+    def endless(*arguments: object) -> None:
+        began.set()
+        until(arguments[-1])
+        ended.set()
+        raise Cancelled
+
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "paper_steps", endless)
+        desk.c.selection.select(place_of(desk.c, lit=False, near=2))
+        desk.until(began.is_set)
+        desk.c.selection.clear()
+        desk.until(ended.is_set)
+    desk.click()
