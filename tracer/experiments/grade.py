@@ -8,7 +8,6 @@ claims to be exact are held against certificates, too.  At last the worst wrong 
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from copy import deepcopy
 from dataclasses import asdict, dataclass, field, replace
@@ -46,8 +45,7 @@ class Row:
 
     `wrong` counts wrong answers, or for clusters of lights the pixels beyond their error, and `differing` the pixels of
     another colour than by `none`, of `pixels`.  Of `answers` at first hits, certificates prove some and refute others.
-    `none` and `method` have the "steps" and "tests" of shadow rays in the paper's tree; seconds are those of each frame
-    in the fast one."""
+    Steps and tests are those of shadow rays in the paper's tree, seconds those of each frame in the fast one."""
 
     frames: int = 0
     due: int = 0
@@ -57,10 +55,12 @@ class Row:
     answers: int = 0
     proven: int = 0
     refuted: int = 0
-    none: Counter[str] = field(default_factory=Counter)
-    method: Counter[str] = field(default_factory=Counter)
-    seconds_of_none: list[float] = field(default_factory=list)
+    steps: int = 0
+    steps_of_none: int = 0
+    tests: int = 0
+    tests_of_none: int = 0
     seconds: list[float] = field(default_factory=list)
+    seconds_of_none: list[float] = field(default_factory=list)
 
     @property
     def right(self) -> bool:
@@ -74,7 +74,7 @@ class Row:
 
     def saved(self, work: str) -> float:
         """The part of the "steps" or "tests" of `none` that is saved."""
-        return 1.0 - self.method[work] / self.none[work] if self.none[work] else 0.0
+        return 1.0 - getattr(self, work) / max(1, getattr(self, f"{work}_of_none"))
 
     def plus(self, other: Row) -> Row:
         """The sum of both."""
@@ -193,13 +193,14 @@ class Grade(Run[Card]):
             y, x = np.unravel_index(int(off.argmax()), off.shape)
             if off[y, x] > self._worst[0] and not self._kind.clusters:
                 self._worst = float(off[y, x]), trial, row.frames, int(x), int(y)
-            figures = figures_of(frame.statistics)
-            row.due += int(figures["shadow_rays_due"])
-            row.wrong += int(figures["wrong"])
-            for sums, statistics in ((row.none, none.statistics), (row.method, frame.statistics)):
-                sums["steps"] += statistics.shadow.traversal_steps + statistics.certificate_steps
-                sums["tests"] += statistics.shadow.intersection_tests + statistics.certificate_tests
+            counted, of_none = frame.statistics, none.statistics.shadow
             row.frames += 1
+            row.due += counted.shadow.due
+            row.wrong += int(figures_of(counted)["wrong"])
+            row.steps += counted.shadow.traversal_steps + counted.certificate_steps
+            row.tests += counted.shadow.intersection_tests + counted.certificate_tests
+            row.steps_of_none += of_none.traversal_steps
+            row.tests_of_none += of_none.intersection_tests
 
     def _time(self, trial: Trial, row: Row, card: Card, cancel: Cancel) -> None:
         """Time the method, and trace the same on several threads."""

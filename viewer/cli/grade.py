@@ -19,7 +19,7 @@ from tracer.settings import Settings
 from tracer.util.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import FAILED, INTERRUPTED, MISUSED, Parser, count
-from viewer.cli.console import columns_help, listed, print_table, working
+from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, working
 from viewer.output.exports import write_json
 from viewer.output.report_card import COLUMNS, as_markdown, in_words, lines
 from viewer.util.files import check_writable, write_text
@@ -84,7 +84,7 @@ def run(given: Namespace) -> int:
                 raise
             raise ValueError(f"{file}: {said_of(error, file)}") from error
     title = f"{card.method} in {', '.join(card.scenes)} at {card.size[0]} x {card.size[1]}"
-    print_table(listed(COLUMNS, lines(card), title))
+    print_table(fitted(COLUMNS, lambda some: [listed(some, lines(card), title)], terminal_width())[0])
     for sentence in in_words(card):
         print(printable(sentence))
     for path in given.output:

@@ -60,11 +60,12 @@ def in_words(card: Card) -> list[str]:
         measured = " (it goes by measured times)" if Method.parse(card.method).adaptive else ""
         counters = f"other counters{measured}: {', '.join(card.other_counters)}"
     said.append(f"{card.threads} threads make {pictures} as one, and {counters}.")
-    said.append(f"It holds {memory(card.memory_bytes) if card.memory_bytes else 'no memory'} at most.")
-    if card.worst:
-        said.append(f"The worst wrong pixel: {card.worst.where}. {card.worst.words}")
-        if card.worst.left:
-            said.append(f"Of {card.worst.first}, {card.worst.left} are enough to show it.")
+    said.append(
+        f"It holds {memory(card.memory_bytes)} at most." if card.memory_bytes else "It holds no memory of its own."
+    )
+    if worst := card.worst:
+        enough = f"Of {worst.first}, {worst.left} are enough to show one as wrong: " if worst.left else ""
+        said.append(f"The worst wrong pixel: {worst.where}. {enough}{worst.words}")
     return said if card.whole else [*said, "The card is not whole: it was cancelled."]
 
 
