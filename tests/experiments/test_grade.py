@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import tracer
@@ -15,9 +15,9 @@ from tracer.culling.stages import call_at, vectors
 from tracer.experiments.grade import Card, Grade
 from tracer.experiments.trials import LIGHTS, NOTHING, OBJECTS, RESTS
 from tracer.method import Kind, register, unregister
-from tracer.methods import paper
+from tracer.methods.cells import Cells
 from tracer.methods.interface import FrameView, ShadowMethod, Stage
-from tracer.methods.paper import Modes, Paper
+from tracer.methods.paper import Modes
 from tracer.runtime.kernels import native_callback
 from tracer.scene.model import Scene
 from viewer.output.report_card import as_markdown, in_words, verdict
@@ -46,19 +46,18 @@ class DaylightOfMany(Daylight):
         return super().stages(frame, worker, learns) if frame.workers > 1 else []
 
 
-class Stubborn(Paper):
+class Stubborn(Cells):
     """Goes by the modes of the second frame for good, wherever the lights go."""
 
-    kept: np.ndarray | None = None
     frames = 0
 
-    def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
-        (learning,) = super().stages(frame, worker, learns)
-        if self.kept is None and self.frames == 2:
+    def begin(self, frame: FrameView) -> None:
+        if self.frames in (0, 2):
             self.kept = frame.words.copy()
-        kept = frame.words * 0 if self.kept is None else self.kept
-        modes = Modes(words_at(kept), words_at(frame.history.gained[worker]), frame.first)
-        return [Stage(modes, find=learning.find, choose=paper.choose, learn=learning.learn, rows=learning.rows)]
+
+    def stages(self, frame: FrameView, worker: int, learns: bool) -> list[Stage]:
+        modes = Modes(words_at(self.kept), words_at(frame.history.gained[worker]), frame.first)
+        return [replace(stage, data=modes) for stage in super().stages(frame, worker, learns)]
 
     def finish(self, frame: FrameView, statistics: tracer.FrameStatistics) -> None:
         self.frames += 1
@@ -67,14 +66,15 @@ class Stubborn(Paper):
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Scene:
     path = tmp_path_factory.mktemp("room") / "room.aff"
-    path.write_text(ROOM)
+    path.write_text(f"{ROOM}p 3 -1.8 -0.7 -1 -1.8 -0.7 1 -0.8 -0.7 0\n")  # a shelf, whose shadow is certified
     return tracer.load_scene(path)
 
 
 @pytest.fixture
 def named(request: pytest.FixtureRequest) -> Iterator[str]:
     """A method by the name "mine", of the class that a test asks for."""
-    register(Kind("mine", "A test's.", request.param, uses_modes=issubclass(request.param, Paper)))
+    by_cells = issubclass(request.param, Cells)
+    register(Kind("mine", "A test's.", request.param, uses_modes=by_cells, uses_cells=by_cells))
     yield "mine"
     unregister("mine")
 

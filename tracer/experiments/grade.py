@@ -28,13 +28,15 @@ from tracer.frame import Frame, Settings
 from tracer.geometry.accelerators import BVH8, KD_TREE
 from tracer.geometry.world import World
 from tracer.method import Method
+from tracer.neighbours.certified.cost_model import CostModel
 from tracer.renderer import Renderer
 from tracer.scene.aff_writer import aff_text
 from tracer.scene.model import Cancelled, Scene
 
 FRAMES = 8
 PROVES = "certified"
-"""The method whose certificates answers are held against."""
+"""The method whose certificates answers are held against, and how eager it is to make them."""
+EAGER = CostModel(root_requests=2, split_requests=4, settled_candidates=0, max_asked=48, costly_rays=True, stride=1)
 _CHANCE = ("seconds", "phases", "built", "decision")  # of statistics: what depends on time, or on who came first
 Cancel = Callable[[], bool]
 
@@ -138,16 +140,16 @@ class Grade(Run[Card]):
         shared = replace(settings, method=method, samples=1, modes=False, threads=1).recording_only().validated()
         self._counted = replace(shared, accelerator=KD_TREE, verify=True, record_lights=self._kind.exact)
         self._timed = replace(shared, accelerator=BVH8)
-        self._beside = [method, PROVES] if self._kind.exact and method != PROVES else [method]
         self._scenes = [scene for scene, _ in scenes]
         self._trials = [trial for scene, first in scenes for trial in trials(scene, first, frames)]
+        self._worlds: dict[tuple[int, str], World] = {}
         self._worst: tuple[float, Trial, int, int, int] = (VISIBLE, self._trials[0], 0, 0, 0)
-        super().__init__(self._scenes[0], len(self._trials) * (len(self._beside) + 4) * frames + 1)
+        super().__init__(self._scenes[0], len(self._trials) * 5 * frames + 1)
 
     def steps(self, scene: Scene, world: World | None, cancel: Cancel) -> Iterator[Card]:
         for one in self._scenes:
             for accelerator in (KD_TREE, BVH8):
-                self.make_ready([REFERENCE, *self._beside], one, accelerator, cancel)
+                self.make_ready([REFERENCE, self.method, PROVES], one, accelerator, cancel)
         size, names = (self._timed.width, self._timed.height), [one.path.stem for one in self._scenes]
         card = Card(self.method, self._kind.exact, names, size)
         for trial in self._trials:
@@ -165,8 +167,15 @@ class Grade(Run[Card]):
     def copy(self, results: Card) -> Card:
         return deepcopy(results)
 
+    def _world(self, trial: Trial, accelerator: str) -> World:
+        """The world of a trial, which is that of others with the same objects."""
+        key = id(trial.scene.objects), accelerator
+        if key not in self._worlds:
+            self._worlds[key] = World(trial.scene, trial.times[0], accelerator)
+        return self._worlds[key]
+
     def _traced(
-        self, trial: Trial, settings: Settings, methods: list[str], world: World, cancel: Cancel
+        self, trial: Trial, settings: Settings, world: World, cancel: Cancel
     ) -> Iterator[tuple[experiment.Results, dict[str, Frame]]]:
         """What was measured so far, and the newest frame by each method; raises Cancelled."""
         frames: dict[str, Frame] = {}
@@ -175,19 +184,22 @@ class Grade(Run[Card]):
             frames[method] = frame
             self.progressed(f"{trial}: frame {number + 1} of {len(trial.times)}")
 
-        times = trial.times
-        for results in experiment.run(trial.scene, settings, methods, times, cancel=cancel, world=world, on_frame=keep):
+        for results in experiment.run(
+            trial.scene, settings, [self.method], trial.times, cancel=cancel, world=world, on_frame=keep
+        ):
             yield results, frames
         if cancel():
             raise Cancelled
 
     def _count(self, trial: Trial, row: Row, cancel: Cancel) -> None:
         """Count steps, tests and what is wrong, and keep the worst wrong pixel."""
-        world = World(trial.scene, trial.times[0], KD_TREE)
-        for _, frames in self._traced(trial, self._counted, self._beside, world, cancel):
+        world = self._world(trial, KD_TREE)
+        proving = replace(self._counted, method=PROVES, verify=False)
+        proves = Renderer(trial.scene, proving, world=world, cost_model=EAGER)
+        for _, frames in self._traced(trial, self._counted, world, cancel):
             none, frame = frames[REFERENCE], frames[self.method]
             if self._kind.exact:
-                _hold_against(frames[PROVES], none, frame, row)
+                _hold_against(proves.render(frame.time, cancel=cancel), none, frame, row)
             off = _compare(none, frame, row)
             off[frame.wrong == 0] = 0.0
             y, x = np.unravel_index(int(off.argmax()), off.shape)
@@ -204,8 +216,8 @@ class Grade(Run[Card]):
 
     def _time(self, trial: Trial, row: Row, card: Card, cancel: Cancel) -> None:
         """Time the method, and trace the same on several threads."""
-        world, alone = World(trial.scene, trial.times[0], BVH8), []
-        for results, frames in self._traced(trial, self._timed, [self.method], world, cancel):  # noqa: B007
+        world, alone = self._world(trial, BVH8), []
+        for results, frames in self._traced(trial, self._timed, world, cancel):  # noqa: B007
             _compare(frames[REFERENCE], frames[self.method], row)
             alone.append(frames[self.method])
         row.seconds_of_none, row.seconds = (results.methods[m]["frame_seconds"] for m in (REFERENCE, self.method))
