@@ -12,6 +12,7 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
+from tracer.experiments.experiment import REFERENCE
 from tracer.experiments.grade import FRAMES, Grade
 from tracer.methods.from_file import load_method, said_of
 from tracer.scene.model import Cancelled
@@ -71,7 +72,7 @@ def run(given: Namespace) -> int:
         check_writable(path)
     if file and OWN not in os.environ:
         return _in_a_process_of_its_own(file, given.line)
-    settings = options.tracing_settings(given)
+    settings = options.tracing_settings(given, method=REFERENCE)  # that which is graded is still to be read
     with working() as work:
         firsts = dict.fromkeys(given.scenes, 0) or STANDARD
         scenes = [(options.read_scene(scene_path(name), given, work), first) for name, first in firsts.items()]
