@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from statistics import mean
 
 from tests.bench.methods import PAGE
 from tracer.experiments.grade import Card, Grade
@@ -16,7 +17,6 @@ from tracer.experiments.trials import CHANGES
 from tracer.method import bases
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
-from tracer.util.text import saved
 from viewer.cli.grade import STANDARD
 from viewer.output.report_card import verdict
 from viewer.util.numbers import memory
@@ -24,17 +24,24 @@ from viewer.util.resources import scene_path
 
 BEGIN, END = "<!-- graded by make grades -->\n", "<!-- end of what is graded -->\n"
 HEADINGS = ("method", *CHANGES, "steps", "tests", "time", "memory", "threads")
-SETTINGS = Settings(width=144, height=96, depth=2)
+SETTINGS, FRAMES = Settings(width=96, height=64, depth=2), 4
 
 
 def line(card: Card) -> tuple[str, ...]:
     """The card in a line: wrong answers for each kind of change, then what it costs."""
-    total = card.total
-    rows = [card.rows[change] for change in CHANGES]
-    wrong = ("" if row.right else f"{row.wrong / row.due:.3%}" if row.wrong else f"{row.differing} px" for row in rows)
-    threads = "others" if card.other_pictures else "other counters" if card.other_counters else "same"
-    costs = saved(total.saved("steps")), saved(total.saved("tests")), f"{total.time[0]:.2f}"
-    return f"`{card.method}`", *wrong, *costs, memory(card.memory_bytes) if card.memory_bytes else "", threads
+    wrong = []
+    for change in CHANGES:
+        rows = [row for row in card.rows if row.change == change]
+        share = sum(row.counted.wrong for row in rows) / sum(row.due for row in rows)
+        wrong.append("" if all(row.right for row in rows) else f"{share:.3%}")
+    steps, tests = (
+        f"{mean(getattr(row.counted, f'average_{work}') for row in card.rows):.1%}" for work in ("steps", "tests")
+    )
+    seconds = sum(row.timed.path_seconds for row in card.rows)
+    time = seconds / sum(row.timed.path_seconds * row.timed.speed_up for row in card.rows)
+    held = max(row.timed.memory_bytes for row in card.rows)
+    threads = "other pictures" if card.other_pictures else "other counters" if card.other_counters else "the same"
+    return f"`{card.method}`", *wrong, steps, tests, f"{time:.2f}", memory(held) if held else "", threads
 
 
 def main() -> int:
@@ -48,10 +55,10 @@ def main() -> int:
     table = [f"| {' | '.join(HEADINGS)} |", "|---" + "|---:" * (len(HEADINGS) - 1) + "|"]
     lies = 0
     for method in methods:
-        *_, card = Grade(method, scenes, SETTINGS, shrinks=False).each()
+        *_, card = Grade(method, scenes, SETTINGS, FRAMES, shrinks=False).each()
         table.append(f"| {' | '.join(line(card))} |")
         print(f"{method}: {verdict(card)}", flush=True)
-        lies += card.claims_exact and not card.total.right
+        lies += card.claims_exact and not card.right
     print("\n".join(table))
     if options.write:
         before, _, rest = PAGE.read_text().partition(BEGIN)

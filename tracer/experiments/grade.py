@@ -8,20 +8,19 @@ claims to be exact are held against certificates, too.  At last the worst wrong 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from copy import deepcopy
-from dataclasses import asdict, dataclass, field, replace
-from functools import reduce
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from tracer.culling.modes import FULL_SHADOW, NON_SHADOW, has_shadow_mode, shadow_mode
 from tracer.experiments import counterexample, experiment
-from tracer.experiments.experiment import REFERENCE, figures_of
+from tracer.experiments.experiment import REFERENCE, Results
 from tracer.experiments.hunt import VISIBLE
 from tracer.experiments.runner import Run
-from tracer.experiments.shrink import Shrink, Shrunk, WrongPixel, explained
+from tracer.experiments.shrink import Cancel, Shrink, Shrunk, WrongPixel, explained
 from tracer.experiments.trials import Trial, trials
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame, Settings
@@ -38,49 +37,29 @@ PROVES = "certified"
 """The method whose certificates answers are held against, and how eager it is to make them."""
 EAGER = CostModel(root_requests=2, split_requests=4, settled_candidates=0, max_asked=48, costly_rays=True, stride=1)
 _CHANCE = ("seconds", "phases", "built", "decision")  # of statistics: what depends on time, or on who came first
-Cancel = Callable[[], bool]
 
 
 @dataclass
 class Row:
-    """What trials with one kind of change came to.
+    """What a trial came to: `counted` in the paper's tree and `timed` in the fast one, of `due` shadow rays in so many
+    frames, with so many pixels of another colour than by `none`.  Of `answers` at first hits, certificates prove some
+    and refute others."""
 
-    `wrong` counts wrong answers, or for clusters of lights the pixels beyond their error, and `differing` the pixels of
-    another colour than by `none`, of `pixels`.  Of `answers` at first hits, certificates prove some and refute others.
-    Steps and tests are those of shadow rays in the paper's tree, seconds those of each frame in the fast one."""
-
-    frames: int = 0
-    due: int = 0
-    wrong: int = 0
-    pixels: int = 0
-    differing: int = 0
-    answers: int = 0
-    proven: int = 0
-    refuted: int = 0
-    steps: int = 0
-    steps_of_none: int = 0
-    tests: int = 0
-    tests_of_none: int = 0
-    seconds: list[float] = field(default_factory=list)
-    seconds_of_none: list[float] = field(default_factory=list)
+    scene: str
+    change: str
+    frames: int
+    counted: experiment.Row
+    timed: experiment.Row
+    due: int
+    differing: int
+    answers: int
+    proven: int
+    refuted: int
 
     @property
     def right(self) -> bool:
         """Whether every answer and every pixel is that of `none`."""
-        return not (self.wrong or self.differing or self.refuted)
-
-    @property
-    def time(self) -> tuple[float, float]:
-        """How many times as long it took as `none`, and twice the standard error of that."""
-        return experiment.speed_up(np.array(self.seconds), np.array(self.seconds_of_none))
-
-    def saved(self, work: str) -> float:
-        """The part of the "steps" or "tests" of `none` that is saved."""
-        return 1.0 - getattr(self, work) / max(1, getattr(self, f"{work}_of_none"))
-
-    def plus(self, other: Row) -> Row:
-        """The sum of both."""
-        return Row(**{name: value + getattr(other, name) for name, value in vars(self).items()})
+        return not (self.counted.wrong or self.differing or self.refuted)
 
 
 @dataclass
@@ -98,32 +77,23 @@ class Worst:
 
 @dataclass
 class Card:
-    """The report card of a method: a row for each kind of change that was tried, and what it came to besides.
-
-    Of the `threaded` frames that several threads traced, `other_pictures` were others than by one, and so were the
-    counters of these names."""
+    """The report card of a method: a row for each trial, in how many frames several threads have made other pictures
+    than one, which counters were others, and the worst wrong pixel."""
 
     method: str
     claims_exact: bool
-    scenes: list[str]
     size: tuple[int, int]
-    rows: dict[str, Row] = field(default_factory=dict)
-    memory_bytes: int = 0
+    rows: list[Row] = field(default_factory=list)
     threads: int = 3
-    threaded: int = 0
     other_pictures: int = 0
     other_counters: list[str] = field(default_factory=list)
     worst: Worst | None = None
     whole: bool = False
 
     @property
-    def total(self) -> Row:
-        """The sum of all rows."""
-        return reduce(Row.plus, self.rows.values(), Row())
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain lists and numbers, for JSON."""
-        return asdict(self) | {"exact": self.total.right}
+    def right(self) -> bool:
+        """Whether all is that of `none`, with any number of threads."""
+        return all(row.right for row in self.rows) and not self.other_pictures
 
 
 class Grade(Run[Card]):
@@ -150,13 +120,9 @@ class Grade(Run[Card]):
         for one in self._scenes:
             for accelerator in (KD_TREE, BVH8):
                 self.make_ready([REFERENCE, self.method, PROVES], one, accelerator, cancel)
-        size, names = (self._timed.width, self._timed.height), [one.path.stem for one in self._scenes]
-        card = Card(self.method, self._kind.exact, names, size)
+        card = Card(self.method, self._kind.exact, (self._timed.width, self._timed.height))
         for trial in self._trials:
-            row = Row()
-            self._count(trial, row, cancel)
-            self._time(trial, row, card, cancel)
-            card.rows[trial.change] = card.rows.get(trial.change, Row()).plus(row)
+            card.rows.append(self._row(trial, card, cancel))
             yield card
         if self._worst[0] > VISIBLE:
             self._look_into_worst(card, cancel)
@@ -167,6 +133,21 @@ class Grade(Run[Card]):
     def copy(self, results: Card) -> Card:
         return deepcopy(results)
 
+    def _traced(self, trial: Trial, settings: Settings, cancel: Cancel) -> Iterator[tuple[Results, Frame, Frame]]:
+        """What was measured so far, and the newest frame by `none` and by the method; raises Cancelled."""
+        frames: dict[str, Frame] = {}
+
+        def keep(number: int, method: str, frame: Frame) -> None:
+            frames[method] = frame
+            self.progressed(f"{trial}: frame {number + 1} of {len(trial.times)}")
+
+        world = self._world(trial, settings.accelerator)
+        methods, times = [self.method], trial.times
+        for results in experiment.run(trial.scene, settings, methods, times, cancel=cancel, world=world, on_frame=keep):
+            yield results, frames[REFERENCE], frames[self.method]
+        if cancel():
+            raise Cancelled
+
     def _world(self, trial: Trial, accelerator: str) -> World:
         """The world of a trial, which is that of others with the same objects."""
         key = id(trial.scene.objects), accelerator
@@ -174,63 +155,34 @@ class Grade(Run[Card]):
             self._worlds[key] = World(trial.scene, trial.times[0], accelerator)
         return self._worlds[key]
 
-    def _traced(
-        self, trial: Trial, settings: Settings, world: World, cancel: Cancel
-    ) -> Iterator[tuple[experiment.Results, dict[str, Frame]]]:
-        """What was measured so far, and the newest frame by each method; raises Cancelled."""
-        frames: dict[str, Frame] = {}
-
-        def keep(number: int, method: str, frame: Frame) -> None:
-            frames[method] = frame
-            self.progressed(f"{trial}: frame {number + 1} of {len(trial.times)}")
-
-        for results in experiment.run(
-            trial.scene, settings, [self.method], trial.times, cancel=cancel, world=world, on_frame=keep
-        ):
-            yield results, frames
-        if cancel():
-            raise Cancelled
-
-    def _count(self, trial: Trial, row: Row, cancel: Cancel) -> None:
-        """Count steps, tests and what is wrong, and keep the worst wrong pixel."""
-        world = self._world(trial, KD_TREE)
-        proving = replace(self._counted, method=PROVES, verify=False)
+    def _row(self, trial: Trial, card: Card, cancel: Cancel) -> Row:
+        """Count and time what a trial takes, and keep the worst wrong pixel."""
+        held, differing, alone = np.zeros(3, np.int64), 0, []
+        proving, world = replace(self._counted, method=PROVES, verify=False), self._world(trial, KD_TREE)
         proves = Renderer(trial.scene, proving, world=world, cost_model=EAGER)
-        for _, frames in self._traced(trial, self._counted, world, cancel):
-            none, frame = frames[REFERENCE], frames[self.method]
+        for counted, none, frame in self._traced(trial, self._counted, cancel):
             if self._kind.exact:
-                _hold_against(proves.render(frame.time, cancel=cancel), none, frame, row)
-            off = _compare(none, frame, row)
+                held += _held_against(proves.render(frame.time, cancel=cancel), none, frame)
+            differing += _differing(none, frame)
+            off = np.abs(np.clip(frame.color, 0.0, 1.0) - np.clip(none.color, 0.0, 1.0)).max(axis=-1)
+            off = np.nan_to_num(off, nan=1.0)
             off[frame.wrong == 0] = 0.0
             y, x = np.unravel_index(int(off.argmax()), off.shape)
             if off[y, x] > self._worst[0] and not self._kind.clusters:
-                self._worst = float(off[y, x]), trial, row.frames, int(x), int(y)
-            counted, of_none = frame.statistics, none.statistics.shadow
-            row.frames += 1
-            row.due += counted.shadow.due
-            row.wrong += int(figures_of(counted)["wrong"])
-            row.steps += counted.shadow.traversal_steps + counted.certificate_steps
-            row.tests += counted.shadow.intersection_tests + counted.certificate_tests
-            row.steps_of_none += of_none.traversal_steps
-            row.tests_of_none += of_none.intersection_tests
-
-    def _time(self, trial: Trial, row: Row, card: Card, cancel: Cancel) -> None:
-        """Time the method, and trace the same on several threads."""
-        world, alone = self._world(trial, BVH8), []
-        for results, frames in self._traced(trial, self._timed, world, cancel):  # noqa: B007
-            _compare(frames[REFERENCE], frames[self.method], row)
-            alone.append(frames[self.method])
-        row.seconds_of_none, row.seconds = (results.methods[m]["frame_seconds"] for m in (REFERENCE, self.method))
-        card.memory_bytes = max(card.memory_bytes, *results.memory_bytes[self.method])
-        renderer = Renderer(trial.scene, replace(self._timed, threads=card.threads), world=world)
-        for time, one in zip(trial.times, alone, strict=True):
-            other = renderer.render(time, cancel=cancel)
-            card.threaded += 1
-            card.other_pictures += one.color.tobytes() != other.color.tobytes()
-            counters = _counters(other)
-            unlike = [name for name, count in _counters(one).items() if counters[name] != count]
-            card.other_counters = sorted({*card.other_counters, *unlike})
+                self._worst = float(off[y, x]), trial, len(counted.frames) - 1, int(x), int(y)
+        for timed, none, frame in self._traced(trial, self._timed, cancel):  # noqa: B007
+            differing += _differing(none, frame)
+            alone.append(frame)
+        renderer = Renderer(trial.scene, replace(self._timed, threads=card.threads), world=self._world(trial, BVH8))
+        for one in alone:
+            other = renderer.render(one.time, cancel=cancel)
+            card.other_pictures += _differing(one, other) > 0
+            counts = zip(_counters(one), _counters(other), strict=True)
+            card.other_counters = sorted({*card.other_counters, *(name for (name, a), (_, b) in counts if a != b)})
             self.progressed(f"{trial}: by {card.threads} threads")
+        where = trial.scene.path.stem, trial.change, len(alone)
+        due = int(sum(counted.methods[self.method]["shadow_rays_due"]))
+        return Row(*where, experiment.table(counted)[-1], experiment.table(timed)[-1], due, differing, *held.tolist())
 
     def _look_into_worst(self, card: Card, cancel: Cancel) -> None:
         """Shrink the worst wrong pixel, and say what is wrong there."""
@@ -260,31 +212,28 @@ class Grade(Run[Card]):
             worst.found = counterexample.to_json(told[0], scene)
 
 
-def _compare(none: Frame, frame: Frame, row: Row) -> np.ndarray:
-    """Count the pixels of another colour than by `none`; (h, w) by how much each is off."""
-    row.pixels += frame.primitive.size
-    row.differing += int(np.count_nonzero((frame.color != none.color).any(axis=-1)))
-    off = np.abs(np.clip(frame.color, 0.0, 1.0) - np.clip(none.color, 0.0, 1.0)).max(axis=-1)
-    return np.nan_to_num(off, nan=1.0)
+def _differing(none: Frame, frame: Frame) -> int:
+    """How many pixels have another colour."""
+    return int(np.count_nonzero((frame.color != none.color).any(axis=-1)))
 
 
-def _hold_against(certified: Frame, none: Frame, frame: Frame, row: Row) -> None:
-    """Count the answers at first hits that certificates prove, and those that they refute."""
+def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:
+    """Count answers at first hits, and those that certificates prove and refute."""
     words, asked, reached, right = certified.certificates, none.asked, frame.reached, none.reached
-    if words is None or asked is None or reached is None or right is None:  # no certificates with that many lights
-        return
-    row.answers += int(np.count_nonzero(asked))
-    for light in range(asked.shape[-1]):
-        if has_shadow_mode(words, light):
-            due, arrive, proven = asked[..., light], reached[..., light], shadow_mode(words, light)
-            hidden = (due > 0) & (proven == FULL_SHADOW)
+    assert asked is not None and reached is not None and right is not None
+    proven = refuted = 0
+    for light in range(frame.lights):
+        if words is not None and has_shadow_mode(words, light):
+            due, arrive, mode = asked[..., light], reached[..., light], shadow_mode(words, light)
+            hidden = (due > 0) & (mode == FULL_SHADOW)
             # What is certified as lit may be in the shadow of something that moves.
-            lit = (due > 0) & (proven == NON_SHADOW) & (right[..., light] == due)
+            lit = (due > 0) & (mode == NON_SHADOW) & (right[..., light] == due)
             wrong = (hidden & (arrive > 0)) | (lit & (arrive < due))
-            row.proven += int(np.count_nonzero((hidden | lit) & ~wrong))
-            row.refuted += int(np.count_nonzero(wrong))
+            proven += int(np.count_nonzero((hidden | lit) & ~wrong))
+            refuted += int(np.count_nonzero(wrong))
+    return np.array([np.count_nonzero(asked), proven, refuted])
 
 
-def _counters(frame: Frame) -> dict[str, Any]:
+def _counters(frame: Frame) -> list[tuple[str, Any]]:
     """What a frame counted, by names."""
-    return {name: count for name, count in frame.statistics.to_dict().items() if name not in _CHANCE}
+    return [(name, count) for name, count in frame.statistics.to_dict().items() if name not in _CHANCE]

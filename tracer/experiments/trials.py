@@ -13,12 +13,8 @@ from tracer.scene.model import Scene
 from tracer.scene.things import things
 
 NOTHING, CAMERA, LIGHTS, OBJECTS, RESTS = CHANGES = (
-    "nothing moves",
-    "the camera moves",
-    "lights move",
-    "objects move",
-    "objects start and stop",
-)
+    "nothing moves", "the camera moves", "lights move", "objects move", "objects start and stop"
+)  # fmt: skip
 """What changes in a trial."""
 _DRIFT = 0.2  # how far a light moves, as a part of its distance from the camera
 

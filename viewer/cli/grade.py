@@ -1,7 +1,6 @@
 """The command `grade`: the report card of a method, from a file or by its name.
 
-Ctrl-C ends it after the last whole trial: the card so far is shown, and written where it was to go.
-"""
+Ctrl-C ends it after the last whole trial: the card so far is shown, and written where it was to go."""
 
 from __future__ import annotations
 
@@ -10,33 +9,33 @@ import signal
 import subprocess
 import sys
 from argparse import Namespace
+from dataclasses import asdict
 from pathlib import Path
 
 from tracer.experiments.experiment import REFERENCE
 from tracer.experiments.grade import FRAMES, Grade
-from tracer.methods.from_file import load_method, said_of
 from tracer.scene.model import Cancelled
 from tracer.settings import Settings
 from tracer.util.text import printable
 from viewer.cli import arguments, options
 from viewer.cli.arguments import FAILED, INTERRUPTED, MISUSED, Parser, count
 from viewer.cli.console import columns_help, fitted, listed, print_table, terminal_width, working
+from viewer.cli.method_file import load_method, said_of
 from viewer.output.exports import write_json
-from viewer.output.report_card import COLUMNS, as_markdown, in_words, lines
+from viewer.output.report_card import COLUMNS, as_markdown, in_words
 from viewer.util.files import check_writable, write_text
 from viewer.util.resources import scene_path
 
-STANDARD = {"default": 20, "figure4": 6}
+STANDARD = {"default": 20, "figure4": 18}
 """Scenes of the program, and the frame of its path that each begins with."""
 OWN = "SHADOWCULL_GRADES_HERE"  # in the environment of the process that runs what a file defines
 EPILOG = f"""\
 examples:
-  shadowcull grade mine.py
   shadowcull grade mine.py -o card.json -o card.md
   shadowcull grade certified --scene kitchen.aff --size 256x192 --frames 20
 
-A file has one method: what it registers, or else its class, which then claims to be exact. Each row is about one kind
-of change, in all scenes. Ctrl-C keeps the trials that are done; the exit code is then 130.
+A file has one method: what it registers, or else its class, which then claims to be exact. Ctrl-C keeps the trials that
+are done; the exit code is then 130.
 
 {columns_help(COLUMNS)}"""
 
@@ -83,14 +82,14 @@ def run(given: Namespace) -> int:
         except Exception as error:
             if file is None or isinstance(error, Cancelled | MemoryError):
                 raise
-            raise ValueError(f"{file}: {said_of(error, file)}") from error
-    title = f"{card.method} in {', '.join(card.scenes)} at {card.size[0]} x {card.size[1]}"
-    print_table(fitted(COLUMNS, lambda some: [listed(some, lines(card), title)], terminal_width())[0])
+            raise ValueError(said_of(error, file)) from error
+    title = f"Report card of {card.method} at {card.size[0]} x {card.size[1]}"
+    print_table(fitted(COLUMNS, lambda some: [listed(some, card.rows, title)], terminal_width(), 4)[0])
     for sentence in in_words(card):
         print(printable(sentence))
     for path in given.output:
         if path.suffix == ".json":
-            write_json(path, card.to_dict(), indent=1)
+            write_json(path, asdict(card) | {"exact": card.right}, indent=1)
         else:
             write_text(path, as_markdown(card))
         print(printable(path))

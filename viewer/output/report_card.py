@@ -4,65 +4,69 @@ from __future__ import annotations
 
 from tracer.experiments.grade import PROVES, Card, Row
 from tracer.method import Method
-from tracer.util.text import saved
-from viewer.output.reports import Column
+from viewer.output import reports
+from viewer.output.reports import SPEED_UP, TABLE_1, Column
 from viewer.util.numbers import memory, percent, several
 
-LONGEST = 60
-"""Lines of a scene that a card in Markdown shows; JSON has longer ones, too."""
-Line = tuple[str, Row]
+_SHOWN = {column.heading: column for column in TABLE_1}
 
 
-COLUMNS: tuple[Column[Line], ...] = (
-    Column("what changes", "what changes while all else stands still", lambda line: line[0], text=True),
-    Column("wrong answers", "wrong answers (of the shadow rays due)",
-           lambda line: f"{line[1].wrong:,} ({percent(line[1].wrong, line[1].due)})" if line[1].wrong else "none"),
+def _counted(heading: str) -> Column[Row]:
+    """A column of the paper's Table 1."""
+    column = _SHOWN[heading]
+    return Column(column.heading, f"{column.meaning}, in the kd-tree", lambda row: column.cell(row.counted))
+
+
+COLUMNS: tuple[Column[Row], ...] = (
+    Column("scene", "where", lambda row: row.scene, text=True),
+    Column("what changes", "while all else stands still", lambda row: row.change, text=True),
+    Column("wrong answers", reports.WRONG.meaning,
+           lambda row: reports.WRONG.cell(row.counted) if row.counted.wrong else "none"),
     Column("other pixels", "pixels of another colour than by none, in both trees",
-           lambda line: f"{line[1].differing:,}" if line[1].differing else "none"),
-    Column("steps saved", "traversal steps of shadow rays saved, in the kd-tree",
-           lambda line: saved(line[1].saved("steps"))),
-    Column("tests saved", "intersection tests of shadow rays saved, in the kd-tree",
-           lambda line: saved(line[1].saved("tests"))),
-    Column("time", "times as long as by none, in the fast tree on one thread",
-           lambda line: "{:.2f} ± {:.2f}".format(*line[1].time)),
-    Column("frames", "frames of each tree", lambda line: f"{line[1].frames}"),
+           lambda row: f"{row.differing:,}" if row.differing else "none"),
+    _counted("steps saved"),
+    _counted("tests saved"),
+    Column("speed-up", "over none, frame by frame in turn, in the fast tree on one thread",
+           lambda row: SPEED_UP.cell(row.timed)),
+    Column("memory", "what the method held at most",
+           lambda row: memory(row.timed.memory_bytes) if row.timed.memory_bytes else "none"),
 )  # fmt: skip
-
-
-def lines(card: Card) -> list[Line]:
-    """The lines of the table, the sum of all last."""
-    return [*card.rows.items(), ("all", card.total)]
 
 
 def verdict(card: Card) -> str:
     """Say in a sentence whether the method is right, and whether that is what it claims."""
-    total, claims = card.total, card.claims_exact
-    if total.right:
-        known = "as it claims" if claims else "though it does not claim to be"
-        return f"Exact, {known}: all of {several(total.due, 'shadow answer')} are right."
-    unit = "pixel" if Method.parse(card.method).clusters else "answer"
-    what = f"{several(total.wrong, f'wrong {unit}')}, {several(total.differing, 'pixel')} of another colour"
-    never = " or ".join(change for change, row in card.rows.items() if row.right)
-    said = "Wrong, though it claims to be exact" if claims else "Not exact, as it says"
-    return f"{said}: {what}{f'; none while {never}' if never else ''}."
+    if card.right:
+        claims = "as it claims" if card.claims_exact else "though it does not claim to be"
+        return f"Exact, {claims}: all of {several(sum(row.due for row in card.rows), 'shadow answer')} are right."
+    said = "Wrong, though it claims to be exact" if card.claims_exact else "Not exact, as it says"
+    found = {
+        "wrong pixel" if Method.parse(card.method).clusters else "wrong answer": sum(
+            r.counted.wrong for r in card.rows
+        ),
+        "other pixel": sum(row.differing for row in card.rows),
+        "other picture": card.other_pictures,
+    }
+    changes = dict.fromkeys(row.change for row in card.rows)
+    right = [change for change in changes if all(row.right for row in card.rows if row.change == change)]
+    never = f"; none while {' or '.join(right)}" if right else ""
+    many = f" by {card.threads} threads" if card.other_pictures else ""
+    return f"{said}: {', '.join(several(count, name) for name, count in found.items() if count)}{many}{never}."
 
 
 def in_words(card: Card) -> list[str]:
     """Say in a sentence each what the table does not."""
-    total, said = card.total, [verdict(card)]
-    if total.answers:
-        proven = f"prove {percent(total.proven, total.answers)} of its answers at first hits"
-        said.append(f"Certificates of `{PROVES}` {proven}, and refute {total.refuted or 'none'}.")
-    pictures, counters = "the same pictures", "the same counters"
-    if card.other_pictures:
-        pictures = f"other pictures in {card.other_pictures} of {card.threaded} frames"
+    said = [verdict(card)]
+    answers, proven, refuted = (
+        sum(getattr(row, name) for row in card.rows) for name in ("answers", "proven", "refuted")
+    )
+    if answers:
+        share = f"prove {percent(proven, answers)} of its answers at first hits"
+        said.append(f"Certificates of {PROVES} {share}, and refute {f'{refuted:,}' if refuted else 'none'}.")
     if card.other_counters:
         measured = " (it goes by measured times)" if Method.parse(card.method).adaptive else ""
-        counters = f"other counters{measured}: {', '.join(card.other_counters)}"
-    said.append(f"{card.threads} threads make {pictures} as one, and {counters}.")
-    said.append(
-        f"It holds {memory(card.memory_bytes)} at most." if card.memory_bytes else "It holds no memory of its own."
-    )
+        said.append(f"With {card.threads} threads, counters are others{measured}: {', '.join(card.other_counters)}.")
+    elif not card.other_pictures:
+        said.append(f"Pictures and counters are the same with {card.threads} threads as with one.")
     if worst := card.worst:
         enough = f"Of {worst.first}, {worst.left} are enough to show one as wrong: " if worst.left else ""
         said.append(f"The worst wrong pixel: {worst.where}. {enough}{worst.words}")
@@ -71,11 +75,13 @@ def in_words(card: Card) -> list[str]:
 
 def as_markdown(card: Card) -> str:
     """Return the card as Markdown."""
-    scenes = f"{', '.join(card.scenes)} at {card.size[0]} × {card.size[1]}"
-    written = [f"## Report card: `{card.method}`", "", f"Graded in {scenes}.", ""]
-    written += [f"| {' | '.join(column.heading for column in COLUMNS)} |", "|---" + "|---:" * (len(COLUMNS) - 1) + "|"]
-    written += [f"| {' | '.join(column.cell(line) for column in COLUMNS)} |" for line in lines(card)]
+    written = [f"## Report card: `{card.method}`, {card.size[0]} × {card.size[1]}", ""]
+    written += [
+        f"| {' | '.join(column.heading for column in COLUMNS)} |",
+        "|---|---" + "|---:" * (len(COLUMNS) - 2) + "|",
+    ]
+    written += [f"| {' | '.join(column.cell(row) for column in COLUMNS)} |" for row in card.rows]
     written += ["", *(f"- {sentence}" for sentence in in_words(card))]
-    if card.worst and 0 < card.worst.scene.count("\n") <= LONGEST:
+    if card.whole and card.worst and card.worst.scene:
         written += ["", "What is left of the scene, as AFF:", "", "```", *card.worst.scene.splitlines(), "```"]
     return "\n".join(written) + "\n"
