@@ -148,11 +148,11 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "film", "figure", "check", "bench", "sweep", "zoom", "explain", "hunt", "shrink", "info"):
+    for command in ("render", "film", "figure", "check", "bench", "sweep", "zoom", "explain", "hunt", "shrink", "grade", "info"):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
-    pages = ("viewer", "command-line", "sweeps", "shrink", "methods", "results")
+    pages = ("viewer", "command-line", "sweeps", "shrink", "grade", "methods", "results")
     for page in (README, *(DOCS / f"{name}.md" for name in pages)):
         named = set(re.findall(r"`[^`\n]*?(--[a-z-]+)", page.read_text()))
         assert named <= known, page
