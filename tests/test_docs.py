@@ -148,7 +148,20 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "film", "figure", "check", "bench", "sweep", "zoom", "explain", "hunt", "shrink", "grade", "info"):
+    for command in (
+        "render",
+        "film",
+        "figure",
+        "check",
+        "bench",
+        "sweep",
+        "zoom",
+        "explain",
+        "hunt",
+        "shrink",
+        "grade",
+        "info",
+    ):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))

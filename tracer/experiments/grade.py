@@ -9,7 +9,6 @@ claims to be exact are held against certificates, too.  At last the worst wrong 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -126,12 +125,11 @@ class Grade(Run[Card]):
             yield card
         if self._worst[0] > VISIBLE:
             self._look_into_worst(card, cancel)
-        card.whole = not cancel()
+        if cancel():
+            raise Cancelled
+        card.whole = True
         self.progressed("done")
         yield card
-
-    def copy(self, results: Card) -> Card:
-        return deepcopy(results)
 
     def _traced(self, trial: Trial, settings: Settings, cancel: Cancel) -> Iterator[tuple[Results, Frame, Frame]]:
         """What was measured so far, and the newest frame by `none` and by the method; raises Cancelled."""
@@ -177,18 +175,18 @@ class Grade(Run[Card]):
         for one in alone:
             other = renderer.render(one.time, cancel=cancel)
             card.other_pictures += _differing(one, other) > 0
-            counts = zip(_counters(one), _counters(other), strict=True)
-            card.other_counters = sorted({*card.other_counters, *(name for (name, a), (_, b) in counts if a != b)})
+            counts, again = one.statistics.to_dict(), other.statistics.to_dict()
+            unlike = {name for name in counts if name not in _CHANCE and counts[name] != again[name]}
+            card.other_counters = sorted(unlike.union(card.other_counters))
             self.progressed(f"{trial}: by {card.threads} threads")
-        where = trial.scene.path.stem, trial.change, len(alone)
         due = int(sum(counted.methods[self.method]["shadow_rays_due"]))
-        return Row(*where, experiment.table(counted)[-1], experiment.table(timed)[-1], due, differing, *held.tolist())
+        rows = experiment.table(counted)[-1], experiment.table(timed)[-1]
+        return Row(trial.scene.path.stem, trial.change, len(alone), *rows, due, differing, *held.tolist())
 
     def _look_into_worst(self, card: Card, cancel: Cancel) -> None:
         """Shrink the worst wrong pixel, and say what is wrong there."""
         difference, trial, number, x, y = self._worst
-        where = f"pixel {x}, {y} in frame {number} of {trial}, off by {difference:.3f} of 1"
-        card.worst = worst = Worst(where)
+        card.worst = worst = Worst(f"pixel {x}, {y} in frame {number} of {trial}, off by {difference:.3f} of 1")
         before = tuple(WarmupFrame(time) for time in trial.times[:number])
         settings = replace(self._counted, record_lights=False)
         scene, wrong = trial.scene, WrongPixel(x, y, trial.times[number], None, before, settings)
@@ -232,8 +230,3 @@ def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:
             proven += int(np.count_nonzero((hidden | lit) & ~wrong))
             refuted += int(np.count_nonzero(wrong))
     return np.array([np.count_nonzero(asked), proven, refuted])
-
-
-def _counters(frame: Frame) -> list[tuple[str, Any]]:
-    """What a frame counted, by names."""
-    return [(name, count) for name, count in frame.statistics.to_dict().items() if name not in _CHANCE]

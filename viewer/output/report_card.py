@@ -4,28 +4,19 @@ from __future__ import annotations
 
 from tracer.experiments.grade import PROVES, Card, Row
 from tracer.method import Method
-from viewer.output import reports
-from viewer.output.reports import SPEED_UP, TABLE_1, Column
+from tracer.util.text import saved
+from viewer.output.reports import SPEED_UP, WRONG, Column
 from viewer.util.numbers import memory, percent, several
-
-_SHOWN = {column.heading: column for column in TABLE_1}
-
-
-def _counted(heading: str) -> Column[Row]:
-    """A column of the paper's Table 1."""
-    column = _SHOWN[heading]
-    return Column(column.heading, f"{column.meaning}, in the kd-tree", lambda row: column.cell(row.counted))
-
 
 COLUMNS: tuple[Column[Row], ...] = (
     Column("scene", "where", lambda row: row.scene, text=True),
     Column("what changes", "while all else stands still", lambda row: row.change, text=True),
-    Column("wrong answers", reports.WRONG.meaning,
-           lambda row: reports.WRONG.cell(row.counted) if row.counted.wrong else "none"),
+    Column("wrong answers", WRONG.meaning,
+           lambda row: WRONG.cell(row.counted) if row.counted.wrong else "none"),
     Column("other pixels", "pixels of another colour than by none, in both trees",
            lambda row: f"{row.differing:,}" if row.differing else "none"),
-    _counted("steps saved"),
-    _counted("tests saved"),
+    Column("steps saved", "traversal steps saved, in the kd-tree", lambda row: saved(row.counted.average_steps)),
+    Column("tests saved", "intersection tests saved, there", lambda row: saved(row.counted.average_tests)),
     Column("speed-up", "over none, frame by frame in turn, in the fast tree on one thread",
            lambda row: SPEED_UP.cell(row.timed)),
     Column("memory", "what the method held at most",
@@ -39,26 +30,21 @@ def verdict(card: Card) -> str:
         claims = "as it claims" if card.claims_exact else "though it does not claim to be"
         return f"Exact, {claims}: all of {several(sum(row.due for row in card.rows), 'shadow answer')} are right."
     said = "Wrong, though it claims to be exact" if card.claims_exact else "Not exact, as it says"
-    found = {
-        "wrong pixel" if Method.parse(card.method).clusters else "wrong answer": sum(
-            r.counted.wrong for r in card.rows
-        ),
-        "other pixel": sum(row.differing for row in card.rows),
-        "other picture": card.other_pictures,
-    }
+    unit = "wrong pixel" if Method.parse(card.method).clusters else "wrong answer"
+    wrong, differing = sum(row.counted.wrong for row in card.rows), sum(row.differing for row in card.rows)
+    found = ((wrong, unit), (differing, "other pixel"), (card.other_pictures, "other picture"))
     changes = dict.fromkeys(row.change for row in card.rows)
     right = [change for change in changes if all(row.right for row in card.rows if row.change == change)]
     never = f"; none while {' or '.join(right)}" if right else ""
     many = f" by {card.threads} threads" if card.other_pictures else ""
-    return f"{said}: {', '.join(several(count, name) for name, count in found.items() if count)}{many}{never}."
+    return f"{said}: {', '.join(several(count, name) for count, name in found if count)}{many}{never}."
 
 
 def in_words(card: Card) -> list[str]:
     """Say in a sentence each what the table does not."""
     said = [verdict(card)]
-    answers, proven, refuted = (
-        sum(getattr(row, name) for row in card.rows) for name in ("answers", "proven", "refuted")
-    )
+    counts = ((row.answers, row.proven, row.refuted) for row in card.rows)
+    answers, proven, refuted = map(sum, zip(*counts, strict=True))
     if answers:
         share = f"prove {percent(proven, answers)} of its answers at first hits"
         said.append(f"Certificates of {PROVES} {share}, and refute {f'{refuted:,}' if refuted else 'none'}.")
@@ -76,10 +62,8 @@ def in_words(card: Card) -> list[str]:
 def as_markdown(card: Card) -> str:
     """Return the card as Markdown."""
     written = [f"## Report card: `{card.method}`, {card.size[0]} × {card.size[1]}", ""]
-    written += [
-        f"| {' | '.join(column.heading for column in COLUMNS)} |",
-        "|---|---" + "|---:" * (len(COLUMNS) - 2) + "|",
-    ]
+    written += [f"| {' | '.join(column.heading for column in COLUMNS)} |"]
+    written += ["|---|---" + "|---:" * (len(COLUMNS) - 2) + "|"]
     written += [f"| {' | '.join(column.cell(row) for column in COLUMNS)} |" for row in card.rows]
     written += ["", *(f"- {sentence}" for sentence in in_words(card))]
     if card.whole and card.worst and card.worst.scene:
