@@ -1,4 +1,4 @@
-"""Report cards of all methods, a line each, as `shadowcull grade` makes them: in a small setting, in two minutes.
+"""Report cards of all methods, a line each, as `shadowcull grade` makes them: in a small setting, within some minutes.
 
 make grades                       all methods that a scene of few lights is worth
 make grades ARGS="--write"        into the page of methods, docs/methods.md
@@ -17,10 +17,11 @@ from tracer.experiments.trials import CHANGES
 from tracer.method import bases
 from tracer.scene.load import load_scene
 from tracer.settings import Settings
+from tracer.util.text import saved
 from viewer.cli.grade import STANDARD
 from viewer.output.report_card import verdict
 from viewer.util.numbers import memory
-from viewer.util.resources import scene_path
+from viewer.util.resources import DEFAULT_SCENE, scene_path
 
 BEGIN, END = "<!-- graded by make grades -->\n", "<!-- end of what is graded -->\n"
 HEADINGS = ("method", *CHANGES, "steps", "tests", "time", "memory", "threads")
@@ -34,14 +35,13 @@ def line(card: Card) -> tuple[str, ...]:
         rows = [row for row in card.rows if row.change == change]
         share = sum(row.counted.wrong for row in rows) / sum(row.due for row in rows)
         wrong.append("" if all(row.right for row in rows) else f"{share:.3%}")
-    steps, tests = (
-        f"{mean(getattr(row.counted, f'average_{work}') for row in card.rows):.1%}" for work in ("steps", "tests")
-    )
-    seconds = sum(row.timed.path_seconds for row in card.rows)
-    time = seconds / sum(row.timed.path_seconds * row.timed.speed_up for row in card.rows)
-    held = max(row.timed.memory_bytes for row in card.rows)
+    large = [row for row in card.rows if row.scene == DEFAULT_SCENE]  # in the other scenes there is nothing to save
+    steps, tests = mean(row.counted.average_steps for row in large), mean(row.counted.average_tests for row in large)
+    seconds = sum(row.timed.path_seconds for row in large)
+    time = seconds / sum(row.timed.path_seconds * row.timed.speed_up for row in large)
+    held = max(row.timed.memory_bytes for row in large)
     threads = "other pictures" if card.other_pictures else "other counters" if card.other_counters else "the same"
-    return f"`{card.method}`", *wrong, steps, tests, f"{time:.2f}", memory(held) if held else "", threads
+    return f"`{card.method}`", *wrong, saved(steps), saved(tests), f"{time:.2f}", memory(held) if held else "", threads
 
 
 def main() -> int:

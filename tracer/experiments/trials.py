@@ -16,6 +16,8 @@ NOTHING, CAMERA, LIGHTS, OBJECTS, RESTS = CHANGES = (
     "nothing moves", "the camera moves", "lights move", "objects move", "objects start and stop"
 )  # fmt: skip
 """What changes in a trial."""
+FEWEST = 4
+"""Frames of a trial."""
 _DRIFT = 0.2  # how far a light moves, as a part of its distance from the camera
 
 
@@ -32,7 +34,11 @@ class Trial:
 
 
 def trials(scene: Scene, first: int, frames: int) -> list[Trial]:
-    """One trial for each of `CHANGES` that the scene can show, each of so many frames, from one of its path on."""
+    """One trial for each of `CHANGES` that the scene can show, each of so many frames, from one of its path on.
+
+    Raises ValueError for fewer than `FEWEST`: with pauses, nothing would move."""
+    if frames < FEWEST:
+        raise ValueError(f"a trial has {FEWEST} frames at least, not {frames}")
     start = scene.frame_time(max(0, min(first, scene.frames - frames)))
     step = scene.frame_time(1) - scene.frame_time(0) or 1.0
     going = [start + number * step for number in range(frames)]
