@@ -46,8 +46,7 @@ class Stepping:
         self._taken = taken  # what the frame that was run last sees: all of its samples have it
         self.wanted: Callable[[], None] | None = None
         self.runs: list[tuple[Seen, PaperSteps]] = []
-        self.frame = self.place = 0
-        self.shown, self.problem = False, problem
+        self.frame, self.place, self.shown, self.problem = 0, 0, False, problem
 
     def watch(self) -> None:
         """Say that somebody looks, in each frame of the window."""
