@@ -7,24 +7,31 @@ for most of it.
 from __future__ import annotations
 
 import gc
+import operator
 import os
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Collection
+from functools import cache
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from numba.core.types import Boolean, Number
 from numba.core.types.functions import BaseFunction
 
 from tracer.compiling.estimate import Estimate
 from tracer.compiling.steps import FOR_A_PICTURE, NEEDS, PARTS, SHARES, steps_of
 from tracer.runtime.kernel_cache import cache_root
 from tracer.scene.model import Progress
+from tracer.simd.vectors import Mask, Vector
 
 _USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
 _POLL = 0.1  # seconds from one look at a process to the next
+_OPERATORS = frozenset(
+    value for value in vars(operator).values() if callable(value) and value.__module__ == "_operator"
+)
 _STEP = "next step: "  # before what a process says of itself, since whatever it calls may print too
 
 
@@ -124,25 +131,26 @@ def _worker(*arguments: str) -> subprocess.Popen:
     )
 
 
-def without_collector() -> None:
-    """Let nobody look for garbage in this process, which ends soon: with what numba keeps of each kernel that costs a
-    sixth of the time (64 of 76 s of a frame's kernels), and leaves 0.7 GB instead of 0.4."""
+def only_compile() -> None:
+    """Make this process one that compiles for another, and ends with it.  Nobody looks for garbage: with what numba
+    keeps of each kernel, that costs a sixth of the time (64 of 76 s of a frame's), and leaves 0.7 GB, not 0.4."""
+    threading.Thread(target=_die_with_parent, daemon=True).start()
     gc.freeze()
     gc.disable()
+    ask_operators_once()
 
 
-def with_types_asked_once() -> None:
-    """Let numba find out only once what an operator, or a function, makes of operands of some types: for each `+` in a
-    kernel it tries dozens of ways in turn, which takes a fifth of the time, and the answer is always the same."""
+def ask_operators_once() -> None:
+    """Let numba find out only once what an operator makes of numbers or vectors: it tries dozens of ways in turn, for
+    each `+` in a kernel, with the same answer.  What it makes of functions depends on who calls, and in what order."""
     ask: Any = BaseFunction.get_call_type
-    known: dict[tuple, Any] = {}
+    once = cache(lambda function, context, args: ask(function, context, args, {}))
 
     def asked_once(function: Any, context: Any, args: Any, kws: Any) -> Any:
-        if kws:
-            return ask(function, context, args, kws)
-        if (function, args) not in known:
-            known[function, args] = ask(function, context, args, kws)
-        return known[function, args]
+        of_numbers = all(isinstance(kind, (Number, Boolean, Vector, Mask)) for kind in args)
+        if of_numbers and function.typing_key in _OPERATORS:
+            return once(function, context, args)
+        return ask(function, context, args, kws)
 
     BaseFunction.get_call_type = asked_once  # type: ignore[method-assign, assignment]
 
@@ -154,9 +162,7 @@ def _die_with_parent() -> None:
 
 def _main(part: str, lights: str, accelerator: str) -> None:
     """Compile a part, and say on standard output which step comes next, and at the end that there is none."""
-    threading.Thread(target=_die_with_parent, daemon=True).start()
-    without_collector()
-    with_types_asked_once()
+    only_compile()
     for step in steps_of(part, int(lights), accelerator):
         print(_STEP + step, flush=True)
     print(_STEP, flush=True)

@@ -151,10 +151,6 @@ class Keyboard:
         """Return whether one of these keys is held, whatever modifiers are held with it."""
         return any(imgui.is_key_down(imgui.Key(self.chord(key) & ~_ALL_MODIFIERS)) for key in keys)
 
-    def any_down(self) -> bool:
-        """Return whether any key is held: mostly none is, and nobody has to ask for each command's."""
-        return any(map(imgui.is_key_down, KEYS.values()))
-
     def pressed(self) -> str | None:
         """Return the key that has just been pressed, with its modifiers, as commands have it."""
         held = int(imgui.get_io().key_mods)

@@ -49,8 +49,6 @@ def handle_keys(ui: Ui) -> None:
         return
     if imgui.is_popup_open("", ANY_POPUP):
         return
-    if not ui.keyboard.any_down():
-        return
     for command in ui.commands:
         pressed = [key for key in ui.keymap.of(command.name) if ui.keyboard.is_pressed(key, modifiers, command.repeats)]
         if pressed and (not typing or any(map(works_while_typing, pressed))) and not command.why_not:
