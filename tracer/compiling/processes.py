@@ -7,7 +7,6 @@ for most of it.
 from __future__ import annotations
 
 import gc
-import operator
 import os
 import subprocess
 import sys
@@ -29,9 +28,6 @@ from tracer.simd.vectors import Mask, Vector
 
 _USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
 _POLL = 0.1  # seconds from one look at a process to the next
-_OPERATORS = frozenset(
-    value for value in vars(operator).values() if callable(value) and value.__module__ == "_operator"
-)
 _STEP = "next step: "  # before what a process says of itself, since whatever it calls may print too
 
 
@@ -147,8 +143,8 @@ def ask_operators_once() -> None:
     once = cache(lambda function, context, args: ask(function, context, args, {}))
 
     def asked_once(function: Any, context: Any, args: Any, kws: Any) -> Any:
-        of_numbers = all(isinstance(kind, (Number, Boolean, Vector, Mask)) for kind in args)
-        if of_numbers and function.typing_key in _OPERATORS:
+        is_operator = getattr(function.typing_key, "__module__", "") == "_operator"
+        if is_operator and all(isinstance(kind, (Number, Boolean, Vector, Mask)) for kind in args):
             return once(function, context, args)
         return ask(function, context, args, kws)
 
