@@ -59,7 +59,7 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
     `record_fates`."""
     finder, rays = _finder_for(renderer, frame), pinhole(frame.camera, frame.width, frame.height)
-    if frame.fates is None:
+    if frame.fates is None or frame.cells is None:
         raise ValueError("the frame did not record what became of its shadow rays")
     certified = finder.store.certified
     traced = (frame.fates[..., : len(certified)] & FATE == Fate.TRACED) & certified
@@ -72,7 +72,8 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     eye = np.asarray(rays.origin) - row[:, CORNER : CORNER + 3]
     u, v = (np.einsum("ij,ij->i", eye + way, row[:, at : at + 3]) for at in (ALONG_U, ALONG_V))
     owner = 2 * frame.primitive[y, x] + (np.einsum("ij,ij->i", eye, row[:, NORMAL : NORMAL + 3]) < 0.0)
-    proved = finder.are_provable(owner.astype(np.int32), u, v, light.astype(np.int32), cancelled)
+    cell = np.clip(frame.cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
+    proved = finder.are_provable(owner.astype(np.int32), u, v, cell, light.astype(np.int32), cancelled)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)
     return regret

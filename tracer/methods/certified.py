@@ -215,15 +215,14 @@ class CertifiedCells(WithStore):
         store = self.store
         if store is None or light >= store.count or not store.certified[light]:
             return ""
-        owner, u, v, leaf = store.place_of(primitive, point)
-        cell = proved_cells(store.cells, np.array([leaf], np.int32), light)
-        if cell[0]:
-            slack, most = float(self.slack.of_cells(cell, light)[0]), self.slack.most
+        owner, u, v, number = store.place_of(primitive, point)
+        leaf = np.array([number], np.int32)
+        proved = proved_cells(store.cells, leaf, light)
+        if proved[0]:
+            slack, most = float(self.slack.of_cells(proved, light)[0]), self.slack.most
             return f"That stays so until the light moves by {slack:.3g}{' at least' if slack < most else ' or more'}."
-        if (
-            owner >= 0
-            and self.slack.are_provable(np.array([owner], np.int32), [u], [v], np.array([light], np.int32))[0]
-        ):
+        one = np.ones(1, np.int32)
+        if owner >= 0 and self.slack.are_provable(owner * one, [u], [v], leaf, light * one)[0]:
             return "Regret: a cell that is small enough can be proved here."
         return ""
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracer.neighbours.certified.cell_prism import put_cell
-from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, TOO_MANY, Cells, named_by
+from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, OVERFLOW, SETTLED, TOO_MANY, Cells
 from tracer.neighbours.certified.certify import certify, make_scratch
 from tracer.neighbours.certified.tasks import DEEPEST, SMALLEST
 from tracer.runtime.kernels import kernel, subkernel
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 PART = 0.25  # of the diagonal of all that is static: slack is told up to that
 TRIED, HALVING = 256, 16  # radii of balls, and after how many of these they are half as large
 CHUNK = 64  # places that a thread takes at a time
-NAMELESS = np.empty(0, np.int32)
 Cancel = Callable[[], bool] | None
 
 
@@ -43,26 +42,27 @@ class Places(NamedTuple):
         owner: (n,) int32, as in `Cells`.
         place: (n, 3) float32, as in `Cells`.
         light: (n,) int32.
-        names: (m,) int32, primitives that are known to hide the light, cell after cell.
-        first: (n + 1,) int64, where those of each cell begin, and the last end.
+        names: (m,) int32, numbers of primitives.
+        first, length: (n,) int32, where in these the only ones begin that need be asked, and how many; 0 for all.
     """
 
     owner: NDArray[np.int32]
     place: NDArray[np.float32]
     light: NDArray[np.int32]
     names: NDArray[np.int32]
-    first: NDArray[np.int64]
+    first: NDArray[np.int32]
+    length: NDArray[np.int32]
 
 
 @subkernel
 def _is_proved(o, lights, places, i, radius, s, counts):
     """Whether the cell that s.shaft was put to is proved to be hidden from a ball of light, or lit by all of it."""
-    number, named = np.int64(places.light[i]), places.names[places.first[i] : places.first[i + 1]]
+    number, first, count = np.int64(places.light[i]), np.int64(places.first[i]), np.int64(places.length[i])
     light = np.float64(lights[number, 0]), np.float64(lights[number, 1]), np.float64(lights[number, 2])
     if not put_light(s.shaft, light, radius):
         return False
-    count = np.int64(len(named)) if len(named) > 0 else np.int64(TOO_MANY)
-    state, _amount = certify(s, o, number, light, named, count, 0, counts)
+    given, asked = places.names[first : first + count], count if count > 0 else np.int64(TOO_MANY)
+    state, _amount = certify(s, o, number, light, given, asked, 0, counts)
     return state in (FULL, LIT)
 
 
@@ -108,20 +108,25 @@ class SlackFinder:
 
     def of_cells(self, cell: NDArray[np.int32], light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
         """(n,) how far a light may surely move for its certificates of cells (n,), FULL or LIT, to hold."""
-        cells = self.store.cells
-        named = [named_by(cells, number, light) for number in cell.tolist()]
-        lists = [NAMELESS if names is None else names for names in named]
-        first, light_of = np.cumsum([0, *map(len, lists)]), np.full(len(cell), light, np.int32)
-        places = Places(cells.owner[cell], cells.place[cell], light_of, np.concatenate([NAMELESS, *lists]), first)
+        cells, lights = self.store.cells, np.full(len(cell), light, np.int32)
+        places = Places(cells.owner[cell], cells.place[cell], lights, cells.names, *_lists(cells, cell, lights))
         return np.maximum(self._find(self._in_ball(light), places, self.most, cancelled), np.float32(0.0))
 
     def are_provable(
-        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, light: NDArray[np.int32], cancelled: Cancel = None
-    ) -> NDArray[np.bool_]:
-        """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them."""
-        store = self.store
+        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, cell: NDArray[np.int32], light: NDArray[np.int32],
+        cancelled: Cancel = None,
+    ) -> NDArray[np.bool_]:  # fmt: skip
+        """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them.
+
+        The points may lie in cells (n,), 0 for none: of these certificates may name all that there is to ask."""
+        store, cells = self.store, self.store.cells
         place = smallest_at(u, v, levels_of(store.occluders.rows[owner >> 1], store.scale.max_height))
-        places = Places(owner, place, light, NAMELESS, np.zeros(len(owner) + 1, np.int64))
+        # Of cells that are nested, one is a part of the other if its middle is in it.
+        middle, (u0, v0, size) = place + place[:, 2:] / 3.0, cells.place[cell].T
+        x, y = (middle[:, 0] - u0) * np.sign(size), (middle[:, 1] - v0) * np.sign(size)
+        inside = (cells.owner[cell] == owner) & (x > 0.0) & (y > 0.0) & (x + y < abs(size))
+        first, count = _lists(cells, np.where(inside, cell, np.int32(0)), light)
+        places = Places(owner, place, light, cells.names, first, count)
         return self._find(store.occluders, places, 0.0, cancelled) >= 0.0
 
     def _in_ball(self, light: int) -> Occluders:
@@ -142,6 +147,15 @@ class SlackFinder:
 
         for_each_chunk(work, -(-len(slack) // CHUNK), store.threads, cancelled)
         return slack
+
+
+def _lists(
+    cells: Cells, cell: NDArray[np.int32], light: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Where in names the lists of certificates of cells (n,) for lights (n,) begin, and how long they are; 0 for all
+    that there is."""
+    at = cells.lists[cell, light]
+    return at + np.int32(1), np.where(at == OVERFLOW, np.int32(0), cells.names[at] & np.int32(SETTLED - 1))
 
 
 def proved_cells(cells: Cells, cell: NDArray[np.int32], light: int) -> NDArray[np.int32]:
