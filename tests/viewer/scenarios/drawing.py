@@ -17,7 +17,7 @@ from viewer.util.resources import embedded_scenes
 from viewer.views.wipe import wipe_column
 
 LEGEND = "//Picture/legend"
-OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.SLACK, View.REGRET)  # of other methods; see `culling`
+OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.SLACK, View.REGRET)  # of other methods
 
 
 def views(d: Driver) -> None:
