@@ -1,5 +1,7 @@
 """Reads damaged files, and traces what is left of them: a scene, or one clear line, and nothing else.
 
+Saved pictures and studies are damaged field by field.
+
 Run as `python -m tests.fuzz.readers --seconds 60 --seed 0`, it damages seed after seed until the time is up, and keeps
 files that fail in `build/fuzz`.  The number of a case, which is printed, damages the same file in the same way again.
 """
@@ -18,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import tracer
+from tests.fuzz import fields
 from tests.fuzz.damage import damaged
 from tests.fuzz.seeds import seeds, write_beside
 from tracer.scene.load import load_scene, scene_info
@@ -58,6 +61,22 @@ def attempt(path: Path) -> Scene | None:
     return scene
 
 
+def attempt_fields(folder: Path, number: int) -> bool:
+    """Read a saved picture or a study with changed fields; whether it was not refused.  Raises Fault."""
+    said, started = StringIO(), time.perf_counter()
+    try:
+        with warnings.catch_warnings(), redirect_stderr(said):
+            warnings.simplefilter("error")
+            refused = fields.read_changed(folder, np.random.default_rng(number))
+    except Exception as error:
+        raise Fault(f"{type(error).__name__}: {error}") from error
+    if refused and (not refused.startswith(str(folder)) or "\n" in refused or "Errno" in refused):
+        raise Fault(f"an error that names no file, or not in one line: {refused[:200]!r}")
+    if said.getvalue() or time.perf_counter() - started > SLOW:
+        raise Fault(f"after {time.perf_counter() - started:.0f} s, words on standard error: {said.getvalue()[:200]!r}")
+    return not refused
+
+
 def _traced(path: Path) -> Scene:
     scene = load_scene(path)
     scene_info(scene)
@@ -78,7 +97,7 @@ def trace(scene: Scene) -> None:
 
 def run(seconds: float, seed: int) -> int:
     """Read damaged files for some seconds; how many were at fault."""
-    files, faults, number, read = seeds(), 0, seed, 0
+    files, faults, number, read, kept = seeds(), 0, seed, 0, 0
     until = time.monotonic() + seconds
     with tempfile.TemporaryDirectory() as folder:
         write_beside(Path(folder))
@@ -94,8 +113,13 @@ def run(seconds: float, seed: int) -> int:
                 faults += 1
                 (KEPT / f"{number}{path.suffix}").write_bytes(data)
                 print(f"case {number} ({name}): {fault}", flush=True)
+            try:
+                kept += attempt_fields(Path(folder), number)
+            except Fault as fault:
+                faults += 1
+                print(f"case {number} (fields): {fault}", flush=True)
             number += 1
-    print(f"cases {seed} to {number - 1}: {read} read, {number - seed - read - faults} refused, {faults} at fault")
+    print(f"cases {seed} to {number - 1}: {read} files, {kept} pictures and studies, {faults} at fault, others refused")
     return faults
 
 

@@ -83,6 +83,17 @@ endsolid a
 """
 
 
+def _polygons() -> bytes:
+    """A binary PLY file of a triangle and a square, with a list of texture places for each."""
+    head = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+    )
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "<f4").tobytes()
+    faces = [bytes([n]) + np.arange(n, dtype="<i4").tobytes() + bytes([2 * n]) + bytes(8 * n) for n in (3, 4)]
+    return head.encode() + points + b"".join(faces)
+
+
 def picture() -> bytes:
     """A PNG of a few pixels."""
     file = io.BytesIO()
@@ -115,6 +126,7 @@ def seeds() -> dict[str, bytes]:
         "a.obj": OBJ,
         "a.ply": PLY,
         "b.ply": box.export(file_type="ply"),
+        "c.ply": _polygons(),
         "a.stl": STL,
         "b.stl": box.export(file_type="stl"),
         "a.gltf": _gltf(),

@@ -29,6 +29,7 @@ from viewer.output import capture, commands
 from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings
 from viewer.state import codec
+from viewer.state.draw_options import check_caption
 from viewer.state.methods import can_ask
 from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.session import Session
@@ -127,10 +128,11 @@ def draw(
 
 
 def with_caption_filled(state: ViewState, scene: Scene) -> ViewState:
-    """The state with the fields of its caption (`capture.FIELDS`) filled in; raises CaptureError."""
+    """The state with the fields of its caption (`capture.FIELDS`) filled in; raises ValueError in one line."""
     if not state.draw.caption:
         return state
     caption = capture.filled(state.draw.caption, fields_of(state, scene), what="caption")
+    check_caption(caption)
     return state.with_draw(caption=caption)
 
 

@@ -139,6 +139,15 @@ def _check_place(place: tuple[float, float]) -> None:
         raise ValueError("the legend lies outside the picture")
 
 
+LONGEST_CAPTION = 10_000
+
+
+def check_caption(text: str) -> None:
+    """Raise ValueError, in one line, for a caption that takes long to draw."""
+    if len(text) > LONGEST_CAPTION:
+        raise ValueError(f"a caption has {LONGEST_CAPTION:,} characters at most")
+
+
 @dataclass(frozen=True)
 class DrawOptions:
     """How a frame is drawn.
@@ -204,7 +213,9 @@ class DrawOptions:
         None, "Savings", "Say above the picture what culling saves, with this text for steps and time, and a bar.",
         option="--savings", remembered=False,
     )  # fmt: skip
-    caption: str = setting("", "Caption", "A line of text below the picture.", option="--caption", remembered=False)
+    caption: str = setting(
+        "", "Caption", "A line of text below the picture.", option="--caption", remembered=False, check=check_caption
+    )
     magnified: int = setting(
         1, "Magnified", "Draw rings for a picture that is shown so many times as large.", low=1, high=100,
         option="--magnified", remembered=False,

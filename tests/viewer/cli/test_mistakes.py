@@ -62,6 +62,7 @@ MISTAKES = {
         ("--time 9.5", "time runs from 0 to 9"),
         ("--frame 1 --time 1", "not allowed with"),
         ("--size big", "is not a size"),
+        (f"--caption {10_001 * 'x'}", "a caption has 10,000 characters at most"),
         ("--size 0x10", "is not a size"),
         ("--size 999999x999999", "too many: 67,108,864 at most"),
         ("--size \x1b]0;title\x07", r"\x1b]0;title\x07"),
