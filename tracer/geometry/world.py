@@ -145,6 +145,13 @@ class World:
         """Which objects (n,) rays meet where they are known to be, so that something can be proved of them."""
         return self.structure.certain(poses)
 
+    def present_now(self):
+        return self._poses.present
+
+    def certain_now(self) -> NDArray[np.bool_]:
+        """Which objects (n,) are there, and are met where they are known to be."""
+        return self._poses.present & self.structure.certain(self._poses)
+
     def triangles_of(self, index: int) -> WorldTriangles:
         """The triangles of an object that is present, just as rays meet them."""
         return self.structure.triangles_of(index, self._poses.to_world[index])

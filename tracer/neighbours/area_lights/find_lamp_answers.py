@@ -49,7 +49,7 @@ ADVANCE, SAVINGS, PARDON = 2, 8, 1
 @subkernel
 def find_answers(certified, points, answers, samples, first, number, count, counts):
     """Find what is known of `count` points and lamp `number`, whose samples are those of (any, 3) from the first on."""
-    lamps, o, beam = certified.lamps, certified.occluders, make_beam()
+    lamps, o, beam = certified.lamps, certified.lamps.occluders, make_beam()
     place, radius = lamps.places[number], lamps.radii[number]
     light, many = (place[0], place[1], place[2]), np.int64(lamps.samples[number])
     scratch = Scratch(

@@ -21,6 +21,7 @@ from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.primitives import Outlines
 from tracer.geometry.rays import RAY_OFFSET
+from tracer.neighbours.area_lights.lamp_geometry import LampGeometry
 from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.certified.cell_prism import SceneScale
 from tracer.neighbours.certified.cells import (
@@ -94,6 +95,7 @@ class CertificateStore:
     def _start(self) -> None:
         """Begin with nothing known."""
         self._static = StaticGeometry(self._world, self.count, self.threads, self.cost_model.max_asked > 0)
+        self._lamp_geometry: LampGeometry | None = None
         self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
         self.lights = np.full((self.count, 3), np.nan, np.float32)
         self.radii = np.zeros(self.count, np.float32)
@@ -169,7 +171,11 @@ class CertificateStore:
         self._samples[:] = np.diff(lamps.first)[: self.count]
         self.stationary[:] = ~moved | new
         self._fitted &= ~moved
-        fit = ~self._fitted & (self.stationary | self._are_lamps)
+        if self._are_lamps.any():
+            if self._lamp_geometry is None:
+                self._lamp_geometry = LampGeometry(self._world, self.count, self.threads)
+            self._lamp_geometry.update(self._are_lamps, lights, radii, moved, resting)
+        fit = ~self._fitted & self.stationary & ~self._are_lamps
         self._static.update_lights(np.flatnonzero(fit).tolist(), lights, radii, self.scale.max_height)
         self._fitted |= fit
 
@@ -318,15 +324,16 @@ class CertificateStore:
         )
 
     def _lamps(self) -> LampsView:
-        room, placed = self.scale.max_height * OUTWARDS, self._world.placed
+        geometry = self._lamp_geometry
         return LampsView(
-            known=self._fitted & self._are_lamps,
+            known=self._are_lamps,
             places=self.lights,
             radii=self.radii,
             samples=self._samples,
-            within=(self._static.bounds.reshape(-1) + room).astype(np.float32),
-            moving=placed.moving_box if placed.has_dynamic else NOTHING_MOVES,
+            within=NOTHING_MOVES if geometry is None else geometry.within,
+            moving=NOTHING_MOVES if geometry is None else geometry.moving(NOTHING_MOVES),
             ray_cost=self.cost_model.ray_cost,
+            occluders=self.occluders if geometry is None else geometry.occluders,
         )
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:

@@ -20,6 +20,7 @@ class LampsView(NamedTuple):
         within: (6,) float32, a box outside of which nothing is known of where rays end.
         moving: (6,) float32, a box around all that moves; its lower corner is far above the upper one if nothing does.
         ray_cost: nanoseconds that tracing a ray takes, about.
+        occluders: all that is there in this frame.
     """
 
     known: Bytes
@@ -29,6 +30,7 @@ class LampsView(NamedTuple):
     within: F32
     moving: F32
     ray_cost: int
+    occluders: Occluders
 
 
 class CertificateView(NamedTuple):
