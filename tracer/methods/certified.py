@@ -65,7 +65,7 @@ def choose(data, call, light, count, counts):
     if light < len(certified.lamps.known) and certified.lamps.known[light] != 0:
         answers = lamp_answers_in(scratch_of(given)[CELL_POINT_ROWS:])
         if given.nth == 0:
-            find_answers(certified, points, answers, given.samples, given.sample, light, count, i64_at(counts))
+            find_answers(certified, points, answers, batch, given.samples, given.sample, light, count, i64_at(counts))
         answer_sample(answers, given.nth, count, batch, i64_at(counts))
         return
     asks, position = given.bounce >= certified.first_asking, given.samples[given.sample]

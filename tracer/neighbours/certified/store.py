@@ -334,6 +334,8 @@ class CertificateStore:
             moving=NOTHING_MOVES if geometry is None else geometry.moving(NOTHING_MOVES),
             ray_cost=self.cost_model.ray_cost,
             occluders=self.occluders if geometry is None else geometry.occluders,
+            any_hit=self._world.placed.any_hit,
+            data=self._world.placed.data,
         )
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:

@@ -19,8 +19,9 @@ class LampsView(NamedTuple):
         samples: (lights,) int32, how many.
         within: (6,) float32, a box outside of which nothing is known of where rays end.
         moving: (6,) float32, a box around all that moves; its lower corner is far above the upper one if nothing does.
-        ray_cost: nanoseconds that tracing a ray takes, about.
+        ray_cost: nanoseconds that tracing a ray takes, about; 0 where a few are traced to find out.
         occluders: all that is there in this frame.
+        any_hit, data: the query of the structure (`tracer.geometry.queries`).
     """
 
     known: Bytes
@@ -31,6 +32,8 @@ class LampsView(NamedTuple):
     moving: F32
     ray_cost: int
     occluders: Occluders
+    any_hit: int
+    data: int
 
 
 class CertificateView(NamedTuple):
