@@ -13,13 +13,13 @@ from tracer.culling.counters import TESTS
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
-    bits_of,
     i32_at,
     i32x16,
     i64_at,
     lanes_below,
     load_f32x16,
     load_i32,
+    load_i32x16,
     load_three,
     lowest_bit,
     mask16,
@@ -35,14 +35,14 @@ from tracer.visibility.prepared_triangles import PREPARED, prepare_in_tree, prep
 # Primitives that may come between, at most: a group of vectors', or else each of these goes through the tree by itself;
 # a vector's, or else each of its points does; and a point's, or else its rays are traced.
 OF_GROUP, OF_VECTOR, OF_POINT = 96, 256, 240
-MOST_UNSURE = 64  # primitives about which a vector, or vectors of primitives about which a point, remains unsure
+MOST_UNSURE = 64  # primitives, unsure of points of a vector, or vectors of primitives, unsure of one point, at a time
 GROUPS = MOST_SAMPLES // LANES
 ALL_FOUND = max(OF_VECTOR, OF_POINT)
 NUMBERS, ALL_PREPARED = 4 * (ALL_FOUND + LANES + WIDTH), PREPARED * (ALL_FOUND // LANES)  # bytes
 MARKS = 4 * LANES * GROUPS  # bytes: a bit for each sample of each point of a vector
 ENTRY = 24  # bytes
 ALL_KEPT, UNSURE = KEPT * MOST_UNSURE, ENTRY * MOST_UNSURE  # bytes
-STATE = 24  # bytes
+STATE, EACH_POINT = 24, 4 * LANES  # bytes
 # Nanoseconds, about, without vectors of 512 bits: a beam and its way to the first leaf; sixteen primitives found and
 # prepared; one asked about a vector of points, or sixteen about one; and about one point, and sixteen of its samples.
 FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 100, 8, 16
@@ -51,6 +51,7 @@ FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 100, 8, 16
 EFFORT, LATEST, HIDING = range(3)
 # Of an entry: where the prepared triangle is, the points about which it is unsure, and those from which it can hide.
 TRIANGLE, POINTS, CAN = range(3)
+ALLOWED = 6  # a part of what a point's rays cost: what asking many triangles may take before it has saved anything
 HIDDEN, SEEN, PARTLY = range(3)  # what a point sees of a lamp
 
 
@@ -58,7 +59,8 @@ class Scratch(NamedTuple):
     """Addresses of memory that the kernel which asks has: of samples, of primitives' numbers and these prepared, of
     what is kept of those that remain unsure, and of entries about these; of bits of samples, 16 points one after the
     other, that are blocked and of which nothing is certain; of a lamp's state, int64; and of those prepared primitives
-    of which one hid a point with a beam of its own last."""
+    of which one hid a point with a beam of its own last; and of int32 for each point of a vector, how many triangles
+    are unsure of it, and how many of these were asked about its samples."""
 
     samples: int
     numbers: int
@@ -69,6 +71,8 @@ class Scratch(NamedTuple):
     unsure: int
     state: int
     hiding: int
+    often: int
+    asked: int
 
 
 @inlined
@@ -99,18 +103,17 @@ def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, scratch
     """Ask the primitives that come into a beam about the points of a vector: so many as were found, and perhaps
     `prepared`.  The rays of each point cost so many nanoseconds."""
     end, every, state = load_three(points.lifted, v), np.int64(answers.open[v]), i64_at(scratch.state)
-    # Points that may see some sample, those of which some primitive is unsure, and those that are asked about no more.
-    live, begun, left, entries, often = every, np.int64(0), np.int64(0), np.int64(0), i32x16(0)
-    most = np.int32(worth_asking(lamp, cost))
+    # Points that may see some sample; those of which a primitive is unsure; and those that are asked about no more.
+    live, begun, left, entries = every, np.int64(0), np.int64(0), np.int64(0)
+    store(scratch.often, i32x16(0))
+    store(scratch.asked, i32x16(0))
+    # What hid the neighbours may hide these, and is asked first.
     before = state[LATEST] if prepared else np.int64(-1)
-    batch, met = np.int64(-1), np.int64(0)
-    if before >= 0:  # what hid the neighbours may hide these
-        batch, met = before // LANES, np.int64(1) << (before % LANES)
-    first = before >= 0
+    batch = before // LANES if before >= 0 else np.int64(-1)
+    met, first = (np.int64(1) << (before % LANES), True) if before >= 0 else (np.int64(0), False)
     while live & ~left != 0:
         if met == 0:
-            batch = np.int64(0) if first else batch + 1
-            first = False
+            batch, first = np.int64(0) if first else batch + 1, False
             if batch >= batches_of(found):
                 break
             made = scratch.prepared + PREPARED * batch
@@ -122,52 +125,79 @@ def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, scratch
             continue
         lane = lowest_bit(met)
         met &= met - 1
-        triangle, kept = scratch.prepared + PREPARED * batch + 4 * lane, scratch.kept + KEPT * entries
-        open_ = live
-        counts[TESTS] += ones(open_)
+        entry, kept = i64_at(scratch.entries + ENTRY * entries), scratch.kept + KEPT * entries
+        entry[TRIANGLE] = scratch.prepared + PREPARED * batch + 4 * lane
+        counts[TESTS] += ones(live)
         state[EFFORT] += FOR_POINTS
-        hidden, missed, can = ask_points(triangle, end, lamp.light, lamp.radius, kept)
-        if open_ & hidden != 0:
+        hidden, missed, can = ask_points(entry[TRIANGLE], end, lamp.light, lamp.radius, kept)
+        if live & hidden != 0:
             live &= ~hidden
             state[LATEST] = LANES * batch + lane
-        unsure = open_ & ~(hidden | missed)
-        if unsure == 0:
-            continue
-        begun |= unsure
-        often = select(mask16(unsure), often + np.int32(1), often)
-        left |= bits_of(often > most)
-        if entries + 1 < MOST_UNSURE:
-            entry = i64_at(scratch.entries + ENTRY * entries)
-            entry[TRIANGLE], entry[POINTS], entry[CAN] = triangle, unsure, can
+        entry[POINTS], entry[CAN] = live & ~(missed | left), can
+        if entry[POINTS] != 0:
+            begun |= entry[POINTS]
+            often = load_i32x16(scratch.often)
+            store(scratch.often, select(mask16(entry[POINTS]), often + np.int32(1), often))
             entries += 1
-        else:
-            left |= unsure
-    some = live & begun
-    while some != 0:
-        lane = lowest_bit(some)
-        some &= some - 1
-        if _all_hidden(lane, left, entries, lamp, scratch):
-            live &= ~(np.int64(1) << lane)
+        if entries == MOST_UNSURE:
+            live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
+            entries = np.int64(0)
+    live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
     answers.full[v] = every & ~live
     answers.lit[v] = live & ~begun
     answers.partly[v] = live & begun
     _write_bits(answers, v, live & begun, lamp.groups, scratch)
 
 
+@subkernel
+def _ask_entries(live, left, entries, lamp, cost, scratch):
+    """Ask so many triangles, which are unsure of points of a vector, about these points' samples: which of them are
+    live and left (`ask_vector`) from now on."""
+    often, asked, some = i32_at(scratch.often), i32_at(scratch.asked), np.int64(0)
+    for k in range(entries):
+        some |= i64_at(scratch.entries + ENTRY * k)[POINTS]
+    some &= live & ~left
+    while some != 0:
+        lane = lowest_bit(some)
+        bit = np.int64(1) << lane
+        some &= some - 1
+        if asked[lane] == 0:
+            _begin_samples(lane, lamp, scratch)
+        for k in range(entries):
+            entry = i64_at(scratch.entries + ENTRY * k)
+            if entry[POINTS] & bit == 0:
+                continue
+            asked[lane] += 1
+            if _ask_samples(entry[TRIANGLE], scratch.kept + KEPT * k, lane, entry[CAN] & bit != 0, lamp, lane, scratch):
+                live &= ~bit
+                break
+            if _in_vain(asked[lane], often[lane], lane, lamp, cost, scratch):
+                left |= bit
+                break
+    return live, left
+
+
 @inlined
-def _all_hidden(lane, left, entries, lamp, scratch):
-    """Ask what is unsure of a point about its samples, but for points that are `left`; whether all are hidden."""
-    bit = np.int64(1) << lane
+def _begin_samples(lane, lamp, scratch):
+    """Nothing is known yet of the samples of the point in a lane: none is hidden, and none is in doubt."""
     _put_bits(scratch.blocked, lane, lamp.groups, 0)
-    _put_bits(scratch.unsure, lane, lamp.groups, -1 if left & bit != 0 else 0)
-    for k in range(entries if left & bit == 0 else 0):
-        entry = i64_at(scratch.entries + ENTRY * k)
-        if entry[POINTS] & bit == 0:
-            continue
-        kept = scratch.kept + KEPT * k
-        if _ask_samples(entry[TRIANGLE], kept, lane, entry[CAN] & bit != 0, lamp, lane, scratch):
-            return True
-    return False
+    _put_bits(scratch.unsure, lane, lamp.groups, 0)
+
+
+@inlined
+def _in_vain(asked, often, lane, lamp, cost, scratch):
+    """Whether asking so many triangles about a point's samples, of those that are unsure of it, has taken more than it
+    is worth: more than tracing all its rays, or where there are too many, more than was saved and a part of that.  Of
+    all samples that are not known to be hidden nothing is certain then."""
+    hidden, each = 0, FOR_POINT + FOR_SAMPLES * lamp.groups
+    if each * often <= cost + cost // 2:  # the rays of some points, traced alone, take longer than those of all
+        return False
+    for group in range(lamp.groups):
+        hidden += ones(np.int64(load_i32(scratch.blocked + 4 * (GROUPS * lane + group))))
+    if each * asked <= cost // ALLOWED + hidden * cost // (LANES * lamp.groups):
+        return False
+    _put_bits(scratch.unsure, lane, lamp.groups, -1)
+    return True
 
 
 @subkernel
@@ -228,11 +258,8 @@ def _ask_point(o, lamp, end, lane, found, cost, scratch, counts):
         unsure += ones(entry[POINTS])
     if unsure == 0:
         return SEEN
-    leave = unsure > worth_asking(lamp, cost)
-    _put_bits(scratch.blocked, lane, lamp.groups, 0)
-    _put_bits(scratch.unsure, lane, lamp.groups, -1 if leave else 0)
-    if leave:
-        return PARTLY
+    asked = 0
+    _begin_samples(lane, lamp, scratch)
     for batch in range(batches_of(found)):
         entry = i64_at(scratch.entries + ENTRY * batch)
         some = entry[POINTS]
@@ -242,14 +269,10 @@ def _ask_point(o, lamp, end, lane, found, cost, scratch, counts):
             triangle, kept = entry[TRIANGLE] + 4 * k, scratch.kept + KEPT * batch
             if _ask_samples(triangle, kept, k, (entry[CAN] >> k) & 1 != 0, lamp, lane, scratch):
                 return HIDDEN
+            asked += 1
+            if _in_vain(asked, unsure, lane, lamp, cost, scratch):
+                return PARTLY
     return PARTLY
-
-
-@inlined
-def worth_asking(lamp, cost):
-    """How many triangles may be asked about a point's samples before its rays, of which each costs so many nanoseconds,
-    take less: those of which nothing is certain by then are traced."""
-    return 3 * cost // (2 * (FOR_POINT + FOR_SAMPLES * lamp.groups))
 
 
 @inlined

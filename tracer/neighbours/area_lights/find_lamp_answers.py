@@ -16,6 +16,7 @@ from tracer.culling.stages import vectors
 from tracer.neighbours.area_lights.area_light_query import (
     ALL_KEPT,
     ALL_PREPARED,
+    EACH_POINT,
     EFFORT,
     FOR_BEAM,
     FOR_POINTS,
@@ -66,6 +67,8 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
         unsure=local_memory(MARKS),
         state=local_memory(STATE),
         hiding=local_memory(PREPARED),
+        often=local_memory(EACH_POINT),
+        asked=local_memory(EACH_POINT),
     )
     start_lamp(scratch)
     groups = put_samples(samples, first, many, light, scratch.samples)
