@@ -35,7 +35,7 @@ from tracer.visibility.prepared_triangles import PREPARED, prepare_in_tree, prep
 # Primitives that may come between, at most: a group of vectors', or else each of these goes through the tree by itself;
 # a vector's, or else each of its points does; and a point's, or else its rays are traced.
 OF_GROUP, OF_VECTOR, OF_POINT = 96, 256, 240
-MOST_UNSURE = 64  # primitives, unsure of points of a vector, or vectors of primitives, unsure of one point, at a time
+MOST_UNSURE = 16  # primitives, unsure of points of a vector, or vectors of primitives, unsure of one point, at a time
 GROUPS = MOST_SAMPLES // LANES
 ALL_FOUND = max(OF_VECTOR, OF_POINT)
 NUMBERS, ALL_PREPARED = 4 * (ALL_FOUND + LANES + WIDTH), PREPARED * (ALL_FOUND // LANES)  # bytes
@@ -45,7 +45,7 @@ ALL_KEPT, UNSURE = KEPT * MOST_UNSURE, ENTRY * MOST_UNSURE  # bytes
 STATE, EACH_POINT = 24, 4 * LANES  # bytes
 # Nanoseconds, about, without vectors of 512 bits: a beam and its way to the first leaf; sixteen primitives found and
 # prepared; one asked about a vector of points, or sixteen about one; and about one point, and sixteen of its samples.
-FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 100, 8, 16
+FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 100, 8, 13
 # Of a lamp's state: nanoseconds since the last account; which prepared triangle hid a point of the group last, -1 for
 # none; and whether those that hid a point with a beam of its own are kept.
 EFFORT, LATEST, HIDING = range(3)
@@ -224,7 +224,7 @@ def ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts):
         found = find_primitives(o, lamp.number, beam, OF_POINT, scratch, counts)
         if found < 0:
             continue
-        if passes_by(beam, lamps.moving):
+        if passes_by(beam, lamps.unknown):
             answers.alone[v] |= bit
         sees = _ask_point(o, lamp, end, lane, found, cost, scratch, counts)
         if sees == HIDDEN:

@@ -46,7 +46,7 @@ from tracer.visibility.prepared_triangles import PREPARED, Lamp, prepare_in_tree
 GROUP = 8  # vectors of points with one way through the tree
 # Of a vector's rays: what beams may take before they have saved anything, at most what counts of what they have saved,
 # and what a group that is passed over counts as saved.
-ADVANCE, SAVINGS, PARDON = 2, 8, 1
+ADVANCE, SAVINGS, PARDON = 4, 16, 1
 
 
 @subkernel
@@ -75,7 +75,7 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
     lamp = Lamp(number, light, radius, groups)
     for v in range(vectors(count)):
         answers.open[v] = _open_points(points, light, radius, v) & lanes_below(count, v)
-    ray_cost = cost_of_rays(lamps, points, answers.open, batch, samples[first], count, counts)
+    ray_cost = cost_of_rays(lamps, points, answers.open, batch, samples[first], many, count, counts)
     state, cost = i64_at(scratch.state), many * ray_cost  # of a point's rays
     most = min(OF_VECTOR, LANES * cost // FOR_POINTS)
     balance = ADVANCE * LANES * cost
@@ -96,7 +96,7 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
             for batch in range(batches_of(found)):
                 prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, scratch.prepared + PREPARED * batch)
         state[LATEST] = -1
-        away = found >= 0 and passes_by(beam, lamps.moving)
+        away = found >= 0 and passes_by(beam, lamps.unknown)
         for v in range(start, end):
             if answers.open[v] == 0 or balance < 0:
                 continue
@@ -106,7 +106,7 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
                 state[EFFORT] += FOR_BEAM
                 known = found if found >= 0 else find_primitives(o, number, beam, most, scratch, counts)
                 if known >= 0:
-                    if away or passes_by(beam, lamps.moving):
+                    if away or passes_by(beam, lamps.unknown):
                         answers.alone[v] = answers.open[v]
                     ask_vector(o, points, answers, v, lamp, beam, known, found > 0, cost, scratch, counts)
                 else:

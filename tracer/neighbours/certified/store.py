@@ -20,7 +20,6 @@ from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.primitives import Outlines
-from tracer.geometry.rays import RAY_OFFSET
 from tracer.neighbours.area_lights.lamp_geometry import LampGeometry
 from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.certified.cell_prism import SceneScale
@@ -29,7 +28,6 @@ from tracer.neighbours.certified.cells import (
     ALONG_V,
     CORNER,
     FULL,
-    HIGHEST,
     NOBODY,
     NORMAL,
     ROOTS,
@@ -54,7 +52,7 @@ from tracer.neighbours.certified.view import CertificateView, LampsView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.occluders import FAR, Occluders
-from tracer.visibility.static_geometry import StaticGeometry
+from tracer.visibility.static_geometry import StaticGeometry, max_height
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -62,7 +60,7 @@ if TYPE_CHECKING:
 BATCH = 4096  # tasks of one call of `certify`, at most
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 FEW_TILES = 4  # of a picture: with so many every vector of points makes requests, with twice as many every other
-NOTHING_MOVES = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)  # instead of a box around what does
+NOWHERE = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)  # a box that holds nothing
 NOT_RECORDED = np.empty(0, np.int32)  # where nobody wants to know which cells primary hits see
 
 
@@ -114,7 +112,7 @@ class CertificateStore:
     def _rescale(self) -> None:
         """Let cells be as coarse as the coordinates of all that is static ask for."""
         largest = 1.5 * self._static.largest  # with room for what will come to rest
-        self.scale = SceneScale(float(np.float32(HIGHEST * RAY_OFFSET * largest)), largest)
+        self.scale = SceneScale(max_height(largest), largest)
         self._put_receivers(0)
 
     def _put_receivers(self, index: int, cells: bool = True) -> None:
@@ -330,8 +328,8 @@ class CertificateStore:
             places=self.lights,
             radii=self.radii,
             samples=self._samples,
-            within=NOTHING_MOVES if geometry is None else geometry.within,
-            moving=NOTHING_MOVES if geometry is None else geometry.moving(NOTHING_MOVES),
+            within=NOWHERE if geometry is None else geometry.within,
+            unknown=NOWHERE if geometry is None else geometry.unknown,
             ray_cost=self.cost_model.ray_cost,
             occluders=self.occluders if geometry is None else geometry.occluders,
             any_hit=self._world.placed.any_hit,
