@@ -25,7 +25,7 @@ export PYTHONPYCACHEPREFIX := $(CURDIR)/.cache/bytecode
 export PYTHONDONTWRITEBYTECODE :=
 unexport PYTHONPATH PYTHONHOME PYTHONSTARTUP
 
-.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first first-start dist kernel-wheel docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods results settings
+.PHONY: files run kernels test quick test-all fuzz faults soak golden bench frames quickest lamps counters window table views motion memory large growth first first-start dist kernel-wheel docs notebooks linkcheck pictures lint format lock clean distclean help bounds methods grades results settings
 
 run:  ## open the viewer; without a display, render the default scene to a file (ARGS="kitchen.aff")
 	@tools/environment.sh run
@@ -80,6 +80,10 @@ quickest:  ## hold frames by `auto` against those by `none`, fifty at a time (AR
 methods:  ## hold all methods side by side, scene by scene (ARGS="--write" into their page, "--frames 4 SCENE ...")
 	@tools/environment.sh dev
 	@$(RUN) -m tests.bench.methods $(ARGS)
+
+grades:  ## write a report card for each method, a line each (ARGS="--write" into the page of methods, "paper cells")
+	@tools/environment.sh dev
+	@$(RUN) -m tests.bench.grades $(ARGS)
 
 results:  ## measure all tables of the pages of results and performance anew (ARGS="--write", "--only table-1", "--quick")
 	@tools/environment.sh dev

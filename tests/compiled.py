@@ -9,14 +9,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 from typing import NamedTuple
 
 from tracer.compiling import compilation
 from tracer.compiling.compilation import compiled_before, warm_up
-from tracer.compiling.processes import _die_with_parent, without_collector
+from tracer.compiling.processes import only_compile
 from tracer.compiling.steps import PARTS, steps_of
 
 # Lights (modes in 32 and in 64 bits), structure, and whether only what pictures need is made ready: of other methods
@@ -68,8 +67,7 @@ AFTER = {
 def main(*parts: str) -> int:
     """Compile everything, or some parts, each given as NAME:LIGHTS:ACCELERATOR."""
     if parts:
-        threading.Thread(target=_die_with_parent, daemon=True).start()
-        without_collector()
+        only_compile()
         for part in parts:
             name, lights, accelerator = part.split(":")
             Part(name, int(lights), accelerator).compile()

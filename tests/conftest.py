@@ -26,6 +26,9 @@ gc.disable()
 
 
 def pytest_collection_finish() -> None:
+    from tracer.compiling.processes import ask_operators_once  # loads all of the tracer, which tests need, too
+
+    ask_operators_once()  # kernels of the tests' own are compiled as the program's are
     gc.freeze()
     gc.enable()
 

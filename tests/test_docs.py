@@ -25,6 +25,7 @@ from tracer.experiments.study import read_study
 from tracer.method import additions, bases, unregister
 from tracer.scene.load import load_scene
 from viewer.__main__ import main
+from viewer.cli.main import COMMANDS
 from viewer.cli.sweep import RESULTS
 from viewer.services.controller import Controller
 from viewer.state.preferences import Preferences
@@ -148,11 +149,11 @@ def test_commands_are_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_options_in_the_text_exist(capsys: pytest.CaptureFixture[str]) -> None:
     """Options that the text names, as in `--verify`, are options of some command."""
     known = {"--help", "--version"}
-    for command in ("render", "film", "figure", "check", "bench", "sweep", "zoom", "explain", "hunt", "shrink", "info"):
+    for command in COMMANDS:
         with pytest.raises(SystemExit):
             main([command, "--help"])
         known |= set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
-    pages = ("viewer", "command-line", "sweeps", "shrink", "methods", "results")
+    pages = ("viewer", "command-line", "sweeps", "shrink", "grade", "steps", "methods", "results")
     for page in (README, *(DOCS / f"{name}.md" for name in pages)):
         named = set(re.findall(r"`[^`\n]*?(--[a-z-]+)", page.read_text()))
         assert named <= known, page

@@ -79,12 +79,12 @@ quiet=(--quiet --no-input)
 pip_install() { "${pip[@]}" install "$@" --no-compile --only-binary :all: --require-hashes; }
 
 # uv does in seconds what takes pip a minute.  Where the lock has none, or pip is set up with another index, pip does it,
-# as it does what uv could not.
+# as it does what uv could not.  Like pip, it trusts whom the system trusts: without that, a proxy's certificate ends it.
 install_by_uv() {
     grep -q '^uv==' "tools/$kind.lock" && [[ -z ${PIP_INDEX_URL:-$("${pip[@]}" config get global.index-url 2>/dev/null)} ]] || return
     sed -n '/^uv==/,/[^\\]$/p' "tools/$kind.lock" >.cache/uv.lock
     pip_install --quiet --no-input --no-deps -r .cache/uv.lock &&
-        .venv/bin/python -m uv pip install --no-config --quiet --python .venv/bin/python --only-binary :all: \
+        .venv/bin/python -m uv pip install --no-config --system-certs --quiet --python .venv/bin/python --only-binary :all: \
             --require-hashes -r "tools/$kind.lock"
 }
 

@@ -187,15 +187,22 @@ def test_occlusion(work, symmetric):
     height, width = work.primitive.shape
     for y in range(height):
         for x in range(width):
-            current = work.primitive[y, x]
-            if current != MISS and (x == 0 or y == 0 or x == width - 1 or y == height - 1):
-                work.occluded[current] = True
-            for rx, ry in ((x - 1, y), (x, y - 1)):  # the reference pixels
-                if rx < 0 or ry < 0 or work.primitive[ry, rx] == current:
-                    continue
-                _test_one(work, x, y, work.primitive[ry, rx])
-                if symmetric:
-                    _test_one(work, rx, ry, current)
+            compare_pixel(work, x, y, symmetric)
+
+
+@inlined
+def compare_pixel(work, x, y, symmetric):
+    """Test one pixel against what its reference pixels see, and note what the screen's edge cuts off."""
+    height, width = work.primitive.shape
+    current = work.primitive[y, x]
+    if current != MISS and (x == 0 or y == 0 or x == width - 1 or y == height - 1):
+        work.occluded[current] = True
+    for rx, ry in ((x - 1, y), (x, y - 1)):  # the reference pixels
+        if rx < 0 or ry < 0 or work.primitive[ry, rx] == current:
+            continue
+        _test_one(work, x, y, work.primitive[ry, rx])
+        if symmetric:
+            _test_one(work, rx, ry, current)
 
 
 @inlined
@@ -236,11 +243,17 @@ def reached_by_light(work, primitive, point, light):
 @kernel
 def set_shadow_modes(work):
     """§2.5: OR what shadow rays have found into the shadow modes: FULL_SHADOW and NON_SHADOW make PARTIAL_SHADOW."""
+    for primitive in range(len(work.modes.occlusion)):
+        set_shadow_modes_of(work, primitive)
+
+
+@inlined
+def set_shadow_modes_of(work, primitive):
+    """Set the shadow modes of one primitive."""
     modes = work.modes
-    for primitive in range(len(modes.occlusion)):
-        if modes.occlusion[primitive] != DYNAMIC:
-            for light in range(modes.shadow.shape[1]):
-                modes.shadow[primitive, light] |= work.found[primitive, light]
+    if modes.occlusion[primitive] != DYNAMIC:
+        for light in range(modes.shadow.shape[1]):
+            modes.shadow[primitive, light] |= work.found[primitive, light]
 
 
 # --- §2.6 occlusion-mode setting ------------------------------------------------------------------------
@@ -255,18 +268,25 @@ def set_occlusion_modes(work, zoom_factor):
         if primitive != MISS:
             modes.pixel_count[primitive] += 1
     for p in range(len(modes.occlusion)):
-        count, mode = modes.pixel_count[p], modes.occlusion[p]
-        if mode == DYNAMIC:
-            continue
-        if mode == FULLY_RENDERED:
-            if count > zoom_factor * modes.highest_count[p]:  # seen much closer: examine it anew
-                modes.occlusion[p], modes.highest_count[p] = INIT, count
-        elif work.occluded[p]:
-            modes.occlusion[p] = PARTIALLY_OCCLUDED
-        elif count > 0:
-            modes.occlusion[p], modes.highest_count[p] = FULLY_RENDERED, count
-        else:
-            modes.occlusion[p] = INIT
+        set_occlusion_mode_of(work, p, zoom_factor)
+
+
+@inlined
+def set_occlusion_mode_of(work, p, zoom_factor):
+    """Set the occlusion mode of one primitive."""
+    modes = work.modes
+    count, mode = modes.pixel_count[p], modes.occlusion[p]
+    if mode == DYNAMIC:
+        return
+    if mode == FULLY_RENDERED:
+        if count > zoom_factor * modes.highest_count[p]:  # seen much closer: examine it anew
+            modes.occlusion[p], modes.highest_count[p] = INIT, count
+    elif work.occluded[p]:
+        modes.occlusion[p] = PARTIALLY_OCCLUDED
+    elif count > 0:
+        modes.occlusion[p], modes.highest_count[p] = FULLY_RENDERED, count
+    else:
+        modes.occlusion[p] = INIT
 
 
 # --- shading (Whitted 1980), which asks for shadow rays -------------------------------------------------

@@ -195,9 +195,20 @@ def with_cell_lights(frame: Frame) -> Frame:
     return replace(frame, layers=frame.layers | {"cell lights": np.where(frame.primitive >= 0, asked, np.int32(-1))})
 
 
+def with_proofs(frame: Frame) -> Frame:
+    """A frame with fates as if the renderer had been asked how far lights may move, and what is regretted, drawn by
+    lot."""
+    lots, shape, hit = np.random.default_rng(6), frame.primitive.shape, frame.primitive >= 0
+    could = (frame.fates == TRACED) & (lots.random(frame.fates.shape) < 0.4)
+    layers = frame.layers | {"regret": np.where(hit, could.sum(axis=-1), -1).astype(np.int32)}
+    for light in range(frame.lights):
+        layers[f"slack {light}"] = np.where(hit, lots.uniform(-0.2, 1.0, shape), -1.0).astype(np.float32)
+    return replace(frame, layers=layers)
+
+
 def with_everything(frame: Frame) -> Frame:
     """The frame with whatever any view shows."""
-    return with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame)))))
+    return with_proofs(with_cell_lights(with_voxels(with_cuts(with_lamps(with_certificates(frame))))))
 
 
 def in_part(frame: Frame) -> Frame:

@@ -22,7 +22,7 @@ from imgui_bundle import hello_imgui, imgui, immapp
 from imgui_bundle.immapp import testing
 from PIL import Image
 
-from tests.viewer.driver import PATIENCE, Driver
+from tests.viewer.driver import PATIENCE, SMALL, Driver
 from tests.viewer.scenarios import SCENARIOS
 from tests.viewer.scenarios.starting import first_start
 from viewer.services import beside, refinement
@@ -35,12 +35,15 @@ MEASURING = ("fitting", "panels", "savings")
 # There pictures have the size of the room that the window has for them; elsewhere they are small.
 FILLING = ("capturing", "experimenting", "figures", "fitting", "flying", "hiding", "resizing", "touring")
 SIZE = (320, 200)
+# There the window is small, as nothing is asked of its layout: what fills it is soon traced.
+IN_SMALL = ("at_home", "capturing", "closeup", "comparing", "experimenting", "figures", "flying", "navigating",
+            "resizing", "touring")  # fmt: skip
 DOZING = ("explaining",)  # there the window rests when nothing moves: what threads find out must wake it
 
 
 def run(name: str, size: list[int], scene: str, folder: str) -> int:
     """The exit code of the window that the scenario was played in."""
-    gl_window.first_size = lambda: tuple(size)
+    gl_window.first_size = lambda: SMALL if name in IN_SMALL else tuple(size)
     app = App(Path(scene))
     if name != "touring":
         app.ui.tour.end()  # it comes by itself on the first start

@@ -12,13 +12,19 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Collection
+from functools import cache
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from typing import Any
+
+from numba.core.types import Boolean, Number
+from numba.core.types.functions import BaseFunction
 
 from tracer.compiling.estimate import Estimate
 from tracer.compiling.steps import FOR_A_PICTURE, NEEDS, PARTS, SHARES, steps_of
 from tracer.runtime.kernel_cache import cache_root
 from tracer.scene.model import Progress
+from tracer.simd.vectors import Mask, Vector
 
 _USUAL = 70.0  # seconds that all of it takes one process on a usual machine, with all cores busy
 _POLL = 0.1  # seconds from one look at a process to the next
@@ -121,11 +127,28 @@ def _worker(*arguments: str) -> subprocess.Popen:
     )
 
 
-def without_collector() -> None:
-    """Let nobody look for garbage in this process, which ends soon: with what numba keeps of each kernel that costs a
-    sixth of the time (64 of 76 s of a frame's kernels), and leaves 0.7 GB instead of 0.4."""
+def only_compile() -> None:
+    """Make this process one that compiles for another, and ends with it.  Nobody looks for garbage: with what numba
+    keeps of each kernel, that costs a sixth of the time (64 of 76 s of a frame's), and leaves 0.7 GB, not 0.4."""
+    threading.Thread(target=_die_with_parent, daemon=True).start()
     gc.freeze()
     gc.disable()
+    ask_operators_once()
+
+
+def ask_operators_once() -> None:
+    """Let numba find out only once what an operator makes of numbers or vectors: it tries dozens of ways in turn, for
+    each `+` in a kernel, with the same answer.  What it makes of functions depends on who calls, and in what order."""
+    ask: Any = BaseFunction.get_call_type
+    once = cache(lambda function, context, args: ask(function, context, args, {}))
+
+    def asked_once(function: Any, context: Any, args: Any, kws: Any) -> Any:
+        is_operator = getattr(function.typing_key, "__module__", "") == "_operator"
+        if is_operator and all(isinstance(kind, (Number, Boolean, Vector, Mask)) for kind in args):
+            return once(function, context, args)
+        return ask(function, context, args, kws)
+
+    BaseFunction.get_call_type = asked_once  # type: ignore[method-assign, assignment]
 
 
 def _die_with_parent() -> None:
@@ -135,8 +158,7 @@ def _die_with_parent() -> None:
 
 def _main(part: str, lights: str, accelerator: str) -> None:
     """Compile a part, and say on standard output which step comes next, and at the end that there is none."""
-    threading.Thread(target=_die_with_parent, daemon=True).start()
-    without_collector()
+    only_compile()
     for step in steps_of(part, int(lights), accelerator):
         print(_STEP + step, flush=True)
     print(_STEP, flush=True)

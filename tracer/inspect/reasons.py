@@ -157,6 +157,8 @@ class Reason:
         To how many lights the method answers rays.
     told : str
         What more there is to say, in sentences.
+    more : str
+        How far the light may move before that is known no more, or whether more could be known.
     method : str
         The method.
     instead : Reason or None
@@ -179,6 +181,7 @@ class Reason:
     dynamic_objects: int = 0
     limit: int = MAX_CULLED_LIGHTS
     told: str = ""
+    more: str = ""
     method: str = "paper"
     instead: Reason | None = None
     taught: tuple[TaughtBy, ...] = ()

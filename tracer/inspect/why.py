@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tracer.frame import Frame
     from tracer.frame_in_progress import FrameInProgress
     from tracer.renderer import Renderer
+    from tracer.scene.arrays import Float32
 
 
 _RULES = {
@@ -81,7 +82,7 @@ def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = No
         return Why(x, y, -1, (), tree=tree)
     shadows = unculled_shadow_rays(renderer, frame, x, y, cancelled) if tree is None else tree.rays[0].shadows
     assert shadows is not None, "the primary ray has hit"
-    pixel = _Pixel(renderer, work, frame, x, y)
+    pixel = _Pixel(renderer, work, frame, x, y, None if tree is None else tree.rays[0].end)
     reasons = tuple(pixel.reason(shadows, light) for light in range(frame.lights))
     compared = references(pixel.seen, (x, y)) if frame.settings.keeps_modes else ()
     return Why(x, y, primitive, reasons, pixel.coverage, compared, tree)
@@ -90,7 +91,10 @@ def why(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = No
 class _Pixel:
     """What is known of a pixel for all lights alike."""
 
-    def __init__(self, renderer: Renderer, work: FrameInProgress, frame: Frame, x: int, y: int) -> None:
+    def __init__(
+        self, renderer: Renderer, work: FrameInProgress, frame: Frame, x: int, y: int, end: Float32 | None
+    ) -> None:
+        """`end` (3,) is where its shadow rays end, None where that is not known yet."""
         settings = frame.settings
         self._frame, self._by_modes, self._whole = frame, settings.keeps_modes, frame.statistics.part == 1.0
         self._method = Method.parse(settings.method)
@@ -104,6 +108,7 @@ class _Pixel:
         self._dynamic_objects = int(np.count_nonzero(present[1:] & (work.resting.since[1:] == 0)))
         self._lamps = np.diff(work.shading.lamps.first)
         self._shaded, self.coverage = work.has_shaded(x, y), None
+        self._methods, self._primitive, self._end = work.methods, int(frame.primitive[y, x]), end
         if self._by_modes:
             after = OcclusionMode(int(occlusion_mode(frame.modes[unit])))
             hidden = after is OcclusionMode.PARTIALLY_OCCLUDED
@@ -137,12 +142,19 @@ class _Pixel:
             named=because.named,
             dynamic_objects=self._dynamic_objects,
             told=because.told,
+            more=self._more(verdict, light),
             method=self._frame.settings.method,
             shadow=ShadowMode(int(shadow_mode(self._word, light)[0])) if self._by_modes else ShadowMode.INIT,
         )
         if verdict is not Verdict.TRACED:
             return told
         return self._traced(told, because.known) if self._whole else self._in_part(told)
+
+    def _more(self, verdict: Verdict, light: int) -> str:
+        """What methods have to say besides of a ray that certificates have answered, or that was traced."""
+        if self._end is None or verdict not in (Verdict.CERTIFIED_FULL, Verdict.CERTIFIED_LIT, Verdict.TRACED):
+            return ""
+        return next(filter(None, (method.more(self._primitive, self._end, light) for method in self._methods)), "")
 
     def _in_part(self, told: Reason) -> Reason:
         """What the modes say, where a picture is shaded in part so far."""

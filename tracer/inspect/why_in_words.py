@@ -83,6 +83,8 @@ class Words:
         said = [*self._rule(reason)]
         if reason.rays < reason.samples and reason.rule is not Rule.FACES_AWAY:
             said.append(f" So are {reason.rays} of its {reason.samples} samples.")
+        if reason.more:
+            said.append(f" {reason.more}")
         return tuple(said)
 
     def answer(self, reason: Reason) -> Sentence:

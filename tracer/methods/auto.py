@@ -160,5 +160,8 @@ class Auto(ShadowMethod):
     def explain(self, primitive: int, point: NDArray[np.float32], light: int) -> tuple[str, tuple[int, ...]]:
         return self._certified.explain(primitive, point, light) if self._plan.needs_certificates else ("none", ())
 
+    def more(self, primitive: int, point: NDArray[np.float32], light: int) -> str:
+        return self._certified.more(primitive, point, light) if self._plan.needs_certificates else ""
+
     def because(self, answered: Answered) -> CullReason:
         return self._certified.because(answered)

@@ -32,6 +32,7 @@ from tracer.neighbours.certified.requests import (
     requests_of,
 )
 from tracer.neighbours.certified.scheduler import CertificateScheduler
+from tracer.neighbours.certified.slack import SlackFinder, proved_cells
 from tracer.neighbours.certified.store import CertificateStore
 from tracer.neighbours.certified.view import view_at
 from tracer.runtime.kernels import kernel, native_callback
@@ -108,6 +109,7 @@ class CertifiedCells(WithStore):
         super().__init__(services)
         self.scheduler: CertificateScheduler | None = None
         self._requests: Requests | None = None
+        self._slack: SlackFinder | None = None
         self._cell = NOWHERE
         self._words: NDArray[np.unsignedinteger] | None = None
 
@@ -200,6 +202,29 @@ class CertifiedCells(WithStore):
         if state == ("lit" if answered.lit else "full"):
             return CullReason(Verdict.CERTIFIED_LIT if answered.lit else Verdict.CERTIFIED_FULL, named)
         return CullReason(Verdict.BEAM)  # of a lamp, or where a point lies between two cells
+
+    @property
+    def slack(self) -> SlackFinder:
+        """What finds how far lights may move before certificates fail."""
+        assert self.store is not None, "updated before"
+        if self._slack is None or self._slack.store is not self.store:
+            self._slack = SlackFinder(self.store)
+        return self._slack
+
+    def more(self, primitive: int, point: NDArray[np.float32], light: int) -> str:
+        store = self.store
+        if store is None or light >= store.count or not store.certified[light]:
+            return ""
+        owner, u, v, number = store.place_of(primitive, point)
+        leaf = np.array([number], np.int32)
+        proved = proved_cells(store.cells, leaf, light)
+        if proved[0]:
+            slack, most = float(self.slack.of_cells(proved, light)[0]), self.slack.most
+            return f"That stays so until the light moves by {slack:.3g}{' at least' if slack < most else ' or more'}."
+        one = np.ones(1, np.int32)
+        if owner >= 0 and self.slack.are_provable(owner * one, [u], [v], leaf, light * one)[0]:
+            return "Regret: a cell that is small enough can be proved here."
+        return ""
 
     def forget(self) -> None:
         super().forget()

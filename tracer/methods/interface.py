@@ -178,6 +178,11 @@ class ShadowMethod:
         that this rests on."""
         return "none", ()
 
+    def more(self, primitive: int, point: NDArray[np.float32], light: int) -> str:
+        """What more there is to say of what is known of a light at a point (3,) above a primitive, or could be: a
+        sentence that takes a while to find."""
+        return ""
+
     def because(self, answered: Answered) -> CullReason:
         """Why a stage of this method could answer a shadow ray of the last frame."""
         return CullReason(Verdict.ANSWERED)

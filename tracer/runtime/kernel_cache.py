@@ -104,8 +104,8 @@ def _may_be_compiled(file: Path) -> bool:
 def _hash(path: Path) -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     for file in sorted(sources_of(path)):
-        name = file.relative_to(_ROOT) if file.is_relative_to(_ROOT) else file
-        digest.update(name.as_posix().encode() + b"\0" + _text(file).encode() + b"\0")
+        name = file.relative_to(_ROOT).as_posix() if file.is_relative_to(_ROOT) else file.name
+        digest.update(name.encode() + b"\0" + _text(file).encode() + b"\0")
     return digest.hexdigest()[:16]
 
 

@@ -75,6 +75,6 @@ T is only certain where no displaced plane has the light on its other side (`uns
 All else is unsure, and left to rays.  Two hulls of points make rays: there, 1 and 2 say nearly all (`light_space`).
 
 *To read*, in this order: `error_bounds`, the numbers and the evaluator; `light_space` (point lights; points and boxes),
-`classify` (point lights; prisms) with `fused` triangles, `area_light_tests` (balls; points), `hidden_lights` (boxes;
-boxes).  Then what is looked for and where: `shaft` and `beams`, `occluders` and `tree_walk`, `search`.
+`classify` (points and balls; prisms) with `fused` triangles, `area_light_tests` (balls; points), `hidden_lights`
+(boxes; boxes).  Then what is looked for and where: `shaft` and `beams`, `occluders` and `tree_walk`, `search`.
 """

@@ -1,8 +1,9 @@
 """Classify sixteen primitives against a shaft: which hide the whole cell from the light, and which none of it.
 
 The four functions U, V, D - U - V and D - T of `error_bounds` are linear in where a ray ends, so their extremes over
-the shaft lie at its six corners.  What cannot be decided there is tried against the shaft's planes and boxes, and what
-is undecided then remains a candidate.
+the shaft lie at its six corners.  They are linear in where it starts, too: over a ball around the light they differ
+from their values in its middle by the radius times their gradient at most.  What cannot be decided there is tried
+against the shaft's planes and boxes, and what is undecided then remains a candidate.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from tracer.visibility.error_bounds import (
     Functions,
     beside,
     bounds,
+    cross,
     dot,
     factors_of,
     functions,
@@ -33,6 +35,7 @@ from tracer.visibility.error_bounds import (
     length16,
     rows_at,
     seen_from,
+    spread_in_ball,
     sure_hit_length,
     surely_hit,
     surely_missed,
@@ -42,6 +45,7 @@ from tracer.visibility.shaft import CORNERS, box_outside
 from tracer.visibility.shaft import PRISM_PLANES as PLANES
 
 HUGE, ROUNDING = np.float32(3e38), np.float32(4e-7)
+_ROUNDED = np.float32(1.00001)
 FUNCTIONS, BELOW = 4, CORNERS // 2
 
 
@@ -59,9 +63,25 @@ def _at(shaft, k):
 
 
 @inlined
-def _both(extreme, x):
+def _both(extreme, low, high):
     """The least and the greatest so far."""
-    return minimum(extreme[0], x), maximum(extreme[1], x)
+    return minimum(extreme[0], low), maximum(extreme[1], high)
+
+
+@inlined
+def _at_corner(t, shaft, k):
+    """The least and the greatest `Functions` of triangles as seen, wherever the light is, at a shaft's k-th corner; D
+    for its middle, and that corner."""
+    direction, end = _at(shaft, k)
+    f, d = functions(t, direction, end)
+    if shaft.radius[0] > 0.0:
+        p = end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2]
+        to_u, to_v, n = cross(p, t.e2), cross(t.e1, p), cross(t.e1, t.e2)
+        to_w = n[0] - to_u[0] - to_v[0], n[1] - to_u[1] - to_v[1], n[2] - to_u[2] - to_v[2]
+        radius = np.float32(shaft.radius[0]) * _ROUNDED
+        u, v, w = spread_in_ball(to_u, radius), spread_in_ball(to_v, radius), spread_in_ball(to_w, radius)
+        return Functions(f.u - u, f.v - v, f.w - w, f.b), Functions(f.u + u, f.v + v, f.w + w, f.b), d, end
+    return f, f, d, end
 
 
 class _Extremes(NamedTuple):
@@ -82,11 +102,14 @@ def _over(t, shaft):
     start = f32x16(HUGE), f32x16(-HUGE)
     us, vs, ws, bs, ds, near, coordinates = start, start, start, start, start, f32x16(ZERO), ZERO
     for k in range(CORNERS):
-        direction, end = _at(shaft, k)
-        f, d = functions(t, direction, end)
-        us, vs, ws, bs, ds = _both(us, f.u), _both(vs, f.v), _both(ws, f.w), _both(bs, f.b), _both(ds, d)
+        f, g, d, end = _at_corner(t, shaft, k)
+        us, vs, ws = _both(us, f.u, g.u), _both(vs, f.v, g.v), _both(ws, f.w, g.w)
+        bs, ds = _both(bs, f.b, g.b), _both(ds, d, d)
         near = maximum(near, length16((end[0] - t.corner[0], end[1] - t.corner[1], end[2] - t.corner[2])))
         coordinates = max(coordinates, abs(end[0]) + abs(end[1]) + abs(end[2]))
+    if shaft.radius[0] > 0.0:
+        spread = np.float32(shaft.radius[0]) * _ROUNDED * t.across
+        ds = ds[0] - spread, ds[1] + spread
     along, longest, f = maximum(ds[1], -ds[0]), f32x16(np.float32(shaft.longest[0])), factors_of(t)
     of_d = longest * (f.d + np.float32(2 * SURPLUS) * t.corner_error * (t.first + t.second)) + SMALL
     least, most = Functions(us[0], vs[0], ws[0], bs[0]), Functions(us[1], vs[1], ws[1], bs[1])
@@ -110,8 +133,7 @@ def _separated_by_two(t, shaft, m):
     start = f32x16(ZERO), f32x16(HUGE)
     ub, vb, wb, uv, uw, vw = start, start, start, start, start, start
     for k in range(CORNERS):
-        direction, end = _at(shaft, k)
-        f, _d = functions(t, direction, end)
+        _least, f, _d, _end = _at_corner(t, shaft, k)
         u, v, w, b = f.u + m.u, f.v + m.v, f.w + m.w, f.b + m.b
         ub, vb, wb = _separating(u, b, ub[0], ub[1]), _separating(v, b, vb[0], vb[1]), _separating(w, b, wb[0], wb[1])
         uv, uw, vw = _separating(u, v, uv[0], uv[1]), _separating(u, w, uw[0], uw[1]), _separating(v, w, vw[0], vw[1])
@@ -151,7 +173,7 @@ def classify_for_prism(question, numbers):
     those that none hits."""
     rows, farthest, light, shaft = question.occluders.rows, question.occluders.farthest, question.light, question.shaft
     row = rows_at(rows, numbers)
-    t = seen_from(_short(light), ZERO, row)
+    t = seen_from(_short(light), np.float32(shaft.radius[0]), row)
     over = _over(t, shaft)
     least, most, m = over.least, over.most, over.bounds
     hit = t.sure_side & surely_hit(least, m) & (t.height > np.float32(LAMP) * over.along)
@@ -184,12 +206,11 @@ def put_hidden_parts(rows, numbers, farthest, light, shaft, parts):
     Functions less their error bounds go into parts (FUNCTIONS, 3, 16) float32 at the address `parts`, at the cell's
     three corners, of floor and ceiling whichever is less.  Bits of the triangles of which they hold.  The numbers,
     int32, of the triangles among rows (n, ROW) are at an address."""
-    t = seen_from(_short(light), ZERO, rows_at(rows, numbers))
+    t = seen_from(_short(light), np.float32(shaft.radius[0]), rows_at(rows, numbers))
     over = _over(t, shaft)
     m = over.bounds
     for k in range(BELOW):
-        (near, low), (far, high) = _at(shaft, k), _at(shaft, BELOW + k)
-        (below, _d), (above, _e) = functions(t, near, low), functions(t, far, high)
+        below, above = _at_corner(t, shaft, k)[0], _at_corner(t, shaft, BELOW + k)[0]
         store(parts + 64 * k, minimum(below.u, above.u) - np.float32(INSIDE) * m.u)
         store(parts + 64 * (BELOW + k), minimum(below.v, above.v) - np.float32(INSIDE) * m.v)
         store(parts + 64 * (2 * BELOW + k), minimum(below.w, above.w) - np.float32(INSIDE) * m.w)

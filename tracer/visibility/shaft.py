@@ -42,7 +42,8 @@ class PrismShaft(NamedTuple):
     Attributes:
         corners: (3, CORNERS) float64, x, y and z of the prism's corners, floor first.
         directions: (3, CORNERS) float64, from the light to each of them.
-        longest: (1,) float64, the length of the longest direction.
+        longest: (1,) float64, no less than the length of any ray.
+        radius: (1,) float64, that of the ball in which the light is, around where it was put; 0 for a point.
     """
 
     planes: NDArray[np.float64]
@@ -50,6 +51,7 @@ class PrismShaft(NamedTuple):
     corners: NDArray[np.float64]
     directions: NDArray[np.float64]
     longest: NDArray[np.float64]
+    radius: NDArray[np.float64]
 
 
 @inlined
@@ -61,7 +63,7 @@ def make_shaft():
 def make_prism_shaft() -> PrismShaft:
     """Memory for a shaft to a prism."""
     corners = np.zeros((3, CORNERS)), np.zeros((3, CORNERS))
-    return PrismShaft(np.zeros((PRISM_PLANES, 4)), np.zeros(6), *corners, np.zeros(1))
+    return PrismShaft(np.zeros((PRISM_PLANES, 4)), np.zeros(6), *corners, np.zeros(1), np.zeros(1))
 
 
 # --- what lies outside ------------------------------------------------------------------------------------
@@ -118,10 +120,10 @@ def corner_of(corners, k):
 
 
 @subkernel
-def put_light(shaft, light):
-    """Put a shaft that has a cell to a light (3,): directions, box and side planes.
+def put_light(shaft, light, radius):
+    """Put a shaft that has a cell to a light, a point of a ball around light (3,): directions, box and side planes.
 
-    False where the light is not clearly before the cell's plane."""
+    False where the light is not clearly before the cell's plane, wherever it is."""
     # Find the directions to the corners, and the longest.
     longest = 0.0
     for k in range(CORNERS):
@@ -131,19 +133,19 @@ def put_light(shaft, light):
             shaft.directions[axis, k] = d
             square += d * d
         longest = max(longest, square)
-    shaft.longest[0] = math.sqrt(longest)
+    shaft.longest[0], shaft.radius[0] = math.sqrt(longest) + radius, radius
 
     # Bound light and corners by a box.
     for axis in range(3):
         low = high = light[axis]
         for k in range(CORNERS):
             low, high = min(low, shaft.corners[axis, k]), max(high, shaft.corners[axis, k])
-        shaft.box[axis], shaft.box[3 + axis] = low, high
+        shaft.box[axis], shaft.box[3 + axis] = min(low, light[axis] - radius), max(high, light[axis] + radius)
 
     # Refuse a light that does not see the cell's plane from above, at more than a graze.
     below = shaft.planes[3, 0], shaft.planes[3, 1], shaft.planes[3, 2]
     for k in range(3, CORNERS):
-        if not dot(below, corner_of(shaft.directions, k)) > 1e-4 * shaft.longest[0]:
+        if not dot(below, corner_of(shaft.directions, k)) - radius > 1e-4 * shaft.longest[0]:
             return False
     for j in range(3):
         _put_side(shaft, light, j, (j + 1) % 3, (j + 2) % 3)
@@ -151,15 +153,32 @@ def put_light(shaft, light):
 
 
 @inlined
+def _tilted(n, first, second, radius):
+    """The normal n of a plane through the light and two corners, in these directions, tilted about the line between
+    them until all of a ball around the light is behind the plane; n itself where the ball reaches the line."""
+    edge = second[0] - first[0], second[1] - first[1], second[2] - first[2]
+    along = dot(first, edge) / dot(edge, edge)
+    away = along * edge[0] - first[0], along * edge[1] - first[1], along * edge[2] - first[2]
+    far = length(away)
+    sine = radius / far
+    if not sine < 1.0:
+        return n
+    cosine, part = math.sqrt(1.0 - sine * sine), sine / far
+    return cosine * n[0] - part * away[0], cosine * n[1] - part * away[1], cosine * n[2] - part * away[2]
+
+
+@inlined
 def _put_side(shaft, light, i, j, opposite):
-    """Put the plane through the light and the cell's edge from corner i to j, so far out that all lies behind it."""
+    """Put the plane through the light, or beside its ball, and the cell's edge from corner i to j, so far out that all
+    lies behind it."""
     n = cross(corner_of(shaft.directions, i), corner_of(shaft.directions, j))
     ln = length(n)
     scale = 1.0 / ln if ln > 0.0 else 0.0
     if dot(n, corner_of(shaft.directions, opposite)) > 0.0:
         scale = -scale
-    n = n[0] * scale, n[1] * scale, n[2] * scale
-    most = 0.0
+    n, most = (n[0] * scale, n[1] * scale, n[2] * scale), shaft.radius[0]
+    if most > 0.0:
+        n = _tilted(n, corner_of(shaft.directions, i), corner_of(shaft.directions, j), most)
     for k in range(CORNERS):
         most = max(most, dot(n, corner_of(shaft.directions, k)))
     for axis in range(3):

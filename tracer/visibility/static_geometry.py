@@ -5,6 +5,7 @@ Each object has a tree of its own, made once it is static; `Occluders` hold thes
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -147,6 +148,15 @@ class StaticGeometry:
             enlarge_boxes(self.occluders, number, light, radius, farthest, self.largest)
 
         for_each_chunk(update, len(numbers), self._threads)
+
+    def in_ball(self, number: int, lights: NDArray[np.float32], radius: float, highest: float) -> Occluders:
+        """The occluders as `update_lights` would fit them to a ball around one of lights (n, 3); these stay as they
+        are."""
+        o, other = self.occluders, copy(self)
+        arrays = {name: np.empty_like(getattr(o, name)) for name in ("boxes", "error_radii", "leaf_radii")}
+        other.occluders = o._replace(**arrays)
+        other.update_lights([number], lights, np.full(len(lights), radius, np.float32), highest)
+        return other.occluders
 
     def update_points(self, numbers: list[int], lights: NDArray[np.float32], around: NDArray[np.float64]) -> None:
         """The same for points, whose rays end in a box `around` (2, 3) all that is static.  What has no area is never

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from argparse import Namespace
+from dataclasses import replace
 from typing import Any
 
 from rich.console import Console
@@ -13,10 +14,12 @@ from rich.tree import Tree
 
 from tracer.frame import Frame
 from tracer.inspect.mode_origins import ModeOrigins
+from tracer.inspect.paper_steps import PaperSteps, paper_steps, text
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
 from tracer.inspect.why import why
 from tracer.inspect.why_in_words import Words, plain
+from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
 from tracer.scene.load import check_scene_file
@@ -35,10 +38,12 @@ examples:
   shadowcull explain kitchen.aff --frame 50 --warmup 10 --pixel 256,400 --only wrong
   shadowcull explain default --pixel 200,300 --method certified
   shadowcull explain default --pixel 200,300 --accelerator kdtree --json
+  shadowcull explain default --pixel 200,300 --steps
 
 The tree has the pixel's primary, reflected and refracted rays, and below each the shadow rays from where it ends: not
 due, culled and by what, passed over, or traced, with the steps and tests of the ray alone and what blocks it. Culling
 uses what earlier frames have shown: --warmup N first traces the N frames before, and --repeat N the frame itself.
+--steps prints the paper's text as it runs for the pixel instead, in each of these frames and in the frame itself.
 """
 
 
@@ -49,7 +54,9 @@ def parser() -> Parser:
     options.add_pixel(parser)
     add("--only", choices=list(RaySubset), default="all", help="which shadow rays are listed (default: all)")
     add("--light", type=count(0, 2**31 - 1), metavar="N", help="only shadow rays to this light")
-    add("--json", action="store_true", help="all rays as JSON on standard output")
+    instead = parser.add_mutually_exclusive_group()
+    instead.add_argument("--steps", action="store_true", help="run the paper's text for the pixel, line by line")
+    instead.add_argument("--json", action="store_true", help="all rays as JSON on standard output")
     options.add_tracing(parser)
     return parser
 
@@ -59,6 +66,9 @@ def run(given: Namespace) -> int:
     line, or Cancelled."""
     check_scene_file(given.path)
     settings, (x, y) = options.pixel_settings(given), given.pixel
+    if given.steps:
+        settings = replace(settings, modes=not Method.parse(settings.method).clusters)
+    stepped: list[PaperSteps] = []
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         light = None if given.light is None else options.light_index(given, "--light ", given.light, scene)
@@ -69,11 +79,15 @@ def run(given: Namespace) -> int:
         origins, places = ModeOrigins(len(scene.lights)), None
         for done, earlier in enumerate(before):
             work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
-            modes = renderer.render(earlier.time, earlier.camera, work.cancelled).modes
+            frame = renderer.render(earlier.time, earlier.camera, work.cancelled)
+            if given.steps:
+                stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
             were, places = places, scene.light_positions(earlier.time)
-            origins.add(done, modes, None if were is None else (were != places).any(axis=1))  # lights that have moved
+            origins.add(done, frame.modes, None if were is None else (were != places).any(axis=1))  # moved lights
         work.count("tracing", len(before), len(before) + 1)
         frame = renderer.render(time, given.camera, work.cancelled)
+        if given.steps:
+            stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
         found = _with_origins(why(renderer, frame, x, y, work.cancelled), frame, origins, len(before))
     tree = found.tree
     assert tree is not None
@@ -83,6 +97,11 @@ def run(given: Namespace) -> int:
     title = (
         f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
     )
+    for number, steps in enumerate(stepped, 1):
+        print(printable(f"{title}, frame {number} of {len(stepped)}"))
+        print(*map(printable, steps_lines(steps, scene, light)), sep="\n")
+    if given.steps:
+        return 0
     _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
     return 0
 
@@ -127,7 +146,21 @@ def _add(tree: Tree, row: RayRow) -> None:
         _add(below, one)
 
 
-# --- the reasons as text, and all as JSON --------------------------------------------------------------
+# --- the reasons and steps as text, and all as JSON ----------------------------------------------------
+
+
+def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> list[str]:
+    """Return a line for each step, below what it runs for: its number, its text and its values; `light` leaves out
+    shadow rays to others."""
+    lines, of = [found.remark] if found.remark else [], ("", "")
+    for step in found.steps:
+        if light is not None and step.part.light not in (-1, light):
+            continue
+        if of != (of := (found.heading(step, scene), step.note)):
+            lines.append(of[0])
+        values = " ".join(filter(None, (step.note, ", ".join(map(str, step.values)))))
+        lines.append(f"{step.line:5} {text()[step.line]:72}  {values}".rstrip())
+    return lines
 
 
 def why_lines(found: Why, scene: Scene, light: int | None = None) -> list[str]:

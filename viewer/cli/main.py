@@ -37,6 +37,7 @@ COMMANDS = {
     "explain": ("SCENE", "say what became of each ray of one pixel"),
     "hunt": ("SCENE", "search a path for the worst wrong pixels of a method"),
     "shrink": ("SCENE", "reduce a wrong pixel to the few triangles, lights and frames that it takes"),
+    "grade": ("METHOD", "say whether a method is right, what it costs, and what it learns wrongly"),
     "figure": ("SCENE", "draw a frame by several methods side by side"),
     "check": ("FILE", "render saved pictures and figures again, and say whether they are still true"),
     "prove": ("SCENE", "write what is certified of a frame as proofs that anybody can check"),
@@ -85,6 +86,8 @@ def _run(name: str, arguments: list[str]) -> int:
     command = import_module(f"viewer.cli.{name.replace('-', '_')}")
     parser: Parser = command.parser()
     options = parser.parse_args(arguments)
+    if "line" in options:
+        options.line = arguments
     if "scene" in options:
         options.path = resources.scene_path(options.scene)
     if "view" in options:

@@ -18,7 +18,7 @@ from viewer.services import stills
 from viewer.services.scene_files import find_scene, is_capture
 from viewer.state import codec
 from viewer.state.draw_options import DrawOptions
-from viewer.state.methods import BY_MODES, SHOWN_BY, default_for
+from viewer.state.methods import BY_MODES, CERTIFIED, SHOWN_BY, default_for
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import Record, View
 
@@ -107,6 +107,8 @@ def check_view(settings: Settings, view: View, option: str = "--method") -> None
         View.CUTS: method.clusters,
         View.VOXELS: "voxels" in names,
         View.CELL_LIGHTS: bool({"lie", "lie-exact"} & names),
+        View.SLACK: method.base == CERTIFIED,
+        View.REGRET: method.base == CERTIFIED,
     }
     if not shown.get(view, True):
         raise ValueError(f"--view {view}: the method {method} has nothing for it; give {option} {SHOWN_BY[view]}")

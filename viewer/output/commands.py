@@ -35,7 +35,9 @@ CHANCE = "what is certified depends on time and threads"
 def needs_history(state: ViewState) -> bool:
     """Return whether frames before it show in the picture of a state."""
     method, view = Method.parse(state.settings.method), state.draw.view
-    of_culling = view is View.CERTIFICATE or (view.records in (Record.WORK, Record.FATES) and method.culls)
+    of_culling = view in (View.CERTIFICATE, View.SLACK) or (
+        view.records in (Record.WORK, Record.FATES) and method.culls
+    )
     return of_culling or view.of_modes or state.draw.savings is not None or not method.exact
 
 

@@ -34,6 +34,7 @@ from viewer.services.scene_loader import SceneLoader
 from viewer.services.scene_table import SceneTable
 from viewer.services.settings_controller import SettingsController
 from viewer.services.shrinking import Shrinking
+from viewer.services.stepping import Stepping
 from viewer.services.undo import Undo
 from viewer.state import codec
 from viewer.state.methods import remark_on
@@ -69,6 +70,7 @@ class Controller:
         self.undo = undo = Undo(session, motion, notices, runs.refuses, self.reset_modes)
         self.presets = Presets(session, preferences, notices, settings.save, runs.refuses, undo.begin_step)
         self.inspector = Inspector(selection, renderer.query)
+        self.stepping = Stepping(selection, renderer.query, scheduler.trace_again)
         self.navigator = FrameNavigator(
             session, self.history, scheduler, runs, undo, selection, notices, self.restore, self.reset_modes
         )

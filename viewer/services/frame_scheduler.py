@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
+from typing import Any, NamedTuple
 
 from tracer.frame import Frame
 from tracer.inspect.one_light import with_light
@@ -16,9 +17,11 @@ from tracer.renderer import Renderer
 from viewer.services.frame_budget import AT_ONCE, FrameBudget, Plan, divided
 from viewer.services.frame_inputs import FrameInputs
 from viewer.services.refinement import LampSamples, Refinement
-from viewer.services.render_request import FramesBefore, RenderRequest, Traced, as_asked, missing_buffers
+from viewer.services.render_request import FramesBefore, Newest, RenderRequest, Traced, as_asked, missing_buffers
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
+from viewer.state.methods import can_ask
+from viewer.state.picking import same_place
 from viewer.state.view_state import ViewState
 from viewer.state.views import Record, View, can_draw
 from viewer.views import view_of
@@ -48,6 +51,8 @@ class FrameScheduler:
         self._asked: RenderRequest | None = None
         self._new = False  # the scene
         self._failed: RenderRequest | None = None
+        self._newest = Newest()  # layers that the renderer was asked for
+        self._used: _Layers | None = None
 
     # --- what is given ----------------------------------------------------------------------------
 
@@ -68,8 +73,8 @@ class FrameScheduler:
         return traced
 
     def record_light(self) -> None:
-        """Have the chosen light recorded for the newest frame, where the view needs it and the frame lacks it, as there
-        are too many lights to record all of them in every frame."""
+        """Have what the view shows found for the newest frame, where the frame lacks it: the chosen light, as there
+        are too many lights to record all of them in every frame, or what views ask the renderer for."""
         frame, draw = self.frame, self.inputs.state.draw
         if frame is None or self.inputs.run is not None or draw.light >= frame.lights:
             return
@@ -80,6 +85,18 @@ class FrameScheduler:
                 found: Frame = answer.result()  # with as many samples, or fewer: the light is the same
                 frame = replace(frame, asked=found.asked, reached=found.reached, only_light=draw.light)
                 self.traced = replace(self.traced, frame=frame)
+        if can_ask(frame, draw.view):
+            self._newest.take(self._thread.query(_asked, frame, draw.view, draw.light))
+            self._show_layers(frame, self._newest.answer)
+
+    def _show_layers(self, frame: Frame, found: _Layers | None) -> None:
+        """Give the newest frame what was found last: for the frame before, until its own is there."""
+        draw = self.inputs.state.draw
+        if found is None or found.of != (draw.view, draw.light) or not same_place(found.frame, frame):
+            return
+        if self.traced is not None and (found is not self._used or not can_draw(frame, draw.view, draw.light)):
+            self.traced = replace(self.traced, frame=replace(frame, layers=frame.layers | found.layers))
+            self._used = found
 
     # --- what is forgotten, and traced again --------------------------------------------------------
 
@@ -287,8 +304,8 @@ class FrameScheduler:
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
         if draw.view is view:
             return title
-        settings = self.inputs.settings
-        comes = settings.record_fates if draw.view.records is Record.FATES else draw.view.records is not None
+        settings, asks = self.inputs.settings, self.frame is not None and can_ask(self.frame, draw.view)
+        comes = settings.record_fates if draw.view.records is Record.FATES else asks or draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
@@ -296,6 +313,22 @@ class FrameScheduler:
 
 def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:
     return with_light(renderer, frame, light)
+
+
+class _Layers(NamedTuple):
+    """What the renderer has found of a frame for a view and a light."""
+
+    of: tuple[View, int]
+    frame: Frame
+    layers: dict[str, Any]
+
+
+def _asked(renderer: Renderer, frame: Frame, view: View, light: int, cancelled: Callable[[], bool]) -> _Layers | None:
+    try:
+        assert view.asks is not None, "it can be asked"
+        return _Layers((view, light), frame, view.asks(renderer, frame, light, cancelled))
+    except LookupError:  # lights have moved on in another frame, which will be asked about
+        return None
 
 
 def _what_freezes(state: ViewState) -> object:

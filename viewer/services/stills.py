@@ -29,6 +29,7 @@ from viewer.output import capture, commands
 from viewer.output.comparison import Comparison, Shown
 from viewer.output.overlays import with_caption, with_legend, with_savings
 from viewer.state import codec
+from viewer.state.methods import can_ask
 from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.session import Session
 from viewer.state.view_state import ViewState
@@ -101,6 +102,8 @@ def trace(
     recorded |= {one.value: True for one in records}
     renderer.settings = replace(settings, modes=modes, **recorded)
     frame = renderer.render(state.time, state.camera, cancelled)
+    if view.asks is not None and can_ask(frame, view):
+        frame.layers |= view.asks(renderer, frame, state.draw.light, cancelled)
     lacks_light = view.records is Record.LIGHTS and not recorded["record_lights"]
     return with_light(renderer, frame, state.draw.light) if lacks_light else frame
 

@@ -6,12 +6,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
+from tracer.culling.fate import FATE, Fate
 from tracer.frame import Frame
 from tracer.geometry.accelerators import BVH8
 from tracer.method import Method
 from tracer.statistics import RayCounts
 from viewer.state import terms
 from viewer.state.savings import InTurn, seconds_of
+from viewer.state.views import REGRET
 from viewer.util.numbers import count, percent, whole_percent
 
 RAYS, WORK, TIME = "Shadow rays", "Work", "Time"
@@ -61,6 +65,17 @@ def rows(frame: Frame) -> list[Row]:
     """Return what there is to say of a frame."""
     s = frame.statistics
     return [row for row in _rows(frame, partial(seconds_of, s)) if row.is_shown]
+
+
+def regret_of(frame: Frame) -> int | None:
+    """Return how many rays of a frame were traced that could be proved, if anybody has asked for that."""
+    found = frame.layers.get(REGRET)
+    return None if found is None else int(found[found > 0].sum())
+
+
+def primary_due(frame: Frame) -> int:
+    """Return how many shadow rays of primary hits are due, 0 unless the frame has recorded what became of them."""
+    return 0 if frame.fates is None else int(np.count_nonzero(frame.fates & FATE >= Fate.CULLED))
 
 
 def beside(a: Frame, b: Frame, timed: InTurn | None = None) -> list[tuple[Row, Row]]:
@@ -115,6 +130,8 @@ def _shadow_rays(frame: Frame) -> Iterator[Row]:
     yield term(terms.CANDIDATES_ONLY, shadow.candidates_only, shadow.due)
     yield term(terms.CACHE_HITS, shadow.cache_hits, shadow.due)
     yield term(terms.TRACED, shadow.traced, shadow.due, always=True)
+    could = "of primary hits: traced, although the smallest cell there can be proved; a share of those due, the ceiling"
+    yield Row(RAYS, "Regret", regret_of(frame), could, primary_due(frame))
     yield term(terms.PASSED_OVER, shadow.passed_over)
     wrong, by_lights = s.wrong, s.cuts is None
     of_pixels = terms.WRONG_PIXELS if by_lights else terms.BEYOND

@@ -17,7 +17,8 @@ from viewer.util.numbers import count
 NO_CULLING, BY_MODES, CERTIFIED, ADAPTIVE = "none", "paper", "certified", "auto"
 """What is chosen to see every ray traced, the paper's modes at work, certificates, and whatever is quickest."""
 
-SHOWN_BY = {View.CERTIFICATE: CERTIFIED, View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact"}
+SHOWN_BY = {View.CERTIFICATE: CERTIFIED, View.CUTS: "lightcuts", View.VOXELS: "voxels", View.CELL_LIGHTS: "lie-exact",
+            View.SLACK: CERTIFIED, View.REGRET: CERTIFIED}  # fmt: skip
 """Views of what single methods have, and one that has it."""
 
 
@@ -70,6 +71,13 @@ def remark_on(lights: tuple[Light, ...], settings: Settings) -> str:
     return f"{few}." if few else remark(method, len(lights), lamps)
 
 
+def can_ask(frame: Frame, view: View) -> bool:
+    """Return whether the renderer can be asked for what a view shows: of a whole frame with certificates of cells."""
+    by_cells = Method.parse(frame.settings.method).base in (CERTIFIED, ADAPTIVE) and frame.certificates is not None
+    recorded = view.records is None or frame.fates is not None
+    return view.asks is not None and frame.statistics.part >= 1.0 and by_cells and recorded
+
+
 # --- where there is nothing to see -------------------------------------------------------------------
 
 
@@ -88,7 +96,7 @@ def missing(view: View, frame: Frame, more: bool = False) -> Missing | None:
     method, decision, drawn = Method.parse(frame.settings.method), frame.statistics.decision, can_draw(frame, view)
     if frame.lights == 0 and (view.of_light or view in SHOWN_BY or view.records is Record.LIGHTS):
         return Missing("The scene has no lights.")
-    if view in SHOWN_BY and not drawn:
+    if view in SHOWN_BY and not drawn and not (view.asks is not None and method.base == CERTIFIED):
         if view is View.CERTIFICATE and decision and method.has_certificates and not method.clusters:
             comes = method.adaptive and frame.statistics.certificates > 0 and more
             return Missing(f"{decision}{' More are made and tried while nothing moves.' if comes else ''}", CERTIFIED)

@@ -55,7 +55,7 @@ def pick(frame: Frame, scene: Scene, u: float, v: float) -> Pick:
     if not 0 <= primitive < scene.primitive_count:
         return Pick(x, y, -1)
     point = point_at(frame, u, v)
-    return _named(scene, primitive, x, y, point, _seen(frame))
+    return _named(scene, primitive, x, y, point, seen_of(frame))
 
 
 def pick_primitive(frame: Frame, scene: Scene, primitive: int) -> Pick | None:
@@ -96,13 +96,14 @@ def _middle_pick(frame: Frame, scene: Scene, shown: NDArray[np.bool_]) -> Pick:
     return pick(frame, scene, (columns[nearest] + 0.5) / frame.width, (rows[nearest] + 0.5) / frame.height)
 
 
-def _seen(frame: Frame) -> Seen:
+def seen_of(frame: Frame) -> Seen:
+    """What a pixel of a frame is told by from those of others: its time, its camera and its size."""
     return frame.time, frame.camera, frame.width, frame.height
 
 
 def same_place(one: Frame, other: Frame) -> bool:
     """Whether two frames are of the same moment from the same place, in the same size."""
-    return _seen(one) == _seen(other)
+    return seen_of(one) == seen_of(other)
 
 
 def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
@@ -110,7 +111,7 @@ def pixel_of(kept: Pick, frame: Frame) -> tuple[int, int] | None:
 
     At another size, or from elsewhere, the point lies between pixels: the nearest within `NEARBY` counts that shows its
     primitive, or else, as that may be smaller than a pixel, a surface at the point's distance."""
-    if kept.seen == _seen(frame) and frame.primitive[kept.y, kept.x] == kept.primitive:
+    if kept.seen == seen_of(frame) and frame.primitive[kept.y, kept.x] == kept.primitive:
         return kept.x, kept.y
     at = place(frame, kept.point) if kept.point is not None else None
     if kept.point is None or at is None or not (0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0):

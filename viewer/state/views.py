@@ -5,6 +5,7 @@ lies below the views can ask for a label without knowing how anything is drawn."
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum, StrEnum
 from functools import cache
 from importlib import import_module
@@ -23,6 +24,7 @@ soon and asks for no other frame."""
 
 CUT_NODES, CUT_BOUND = "cut nodes", "cut bound"  # layers of methods that shade by cuts of lights
 CELL_LIGHTS = "cell lights"  # that of methods whose cells know which lights they must look at
+REGRET = "regret"  # what the renderer is asked for
 VOXELS, LIGHT_CUBES = "voxels", "light cubes"  # structures of methods
 
 
@@ -61,6 +63,10 @@ class Declaration:
     shows_clipped: ClassVar[bool] = False
     """Whether it can mark what the screen cuts off of its colours, and may be smoothed where it is enlarged."""
 
+    asks: ClassVar[Callable[..., dict[str, Any]] | None] = None
+    """What finds the layers that it shows of a whole frame with certificates of cells, as that takes longer than a
+    frame may: of the renderer, the frame, a light, and `cancelled()`.  It may raise LookupError and Cancelled."""
+
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         """Return whether the frame holds what it shows, of this light where it is about one."""
         if self.of_modes:
@@ -97,6 +103,8 @@ class View(StrEnum):
     CELL_LIGHTS = "cell-lights"
     FATE = "fate"
     MOVING_SHADOW = "moving-shadow"
+    SLACK = "slack"
+    REGRET = "regret"
 
     # What its file declares can be asked of the name.
     label: str
@@ -110,6 +118,7 @@ class View(StrEnum):
     is_flat: bool
     shows_picture: bool
     shows_clipped: bool
+    asks: Callable[..., dict[str, Any]] | None
 
     if not TYPE_CHECKING:  # so that other names are found out
 

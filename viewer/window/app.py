@@ -70,6 +70,7 @@ def advance(c: Controller, size: tuple[int, int], step: Step = lambda _name, wor
     step("Comparing", c.comparing.update)
     # The scheduler: queries about the newest frame are answered before the next.
     step("Inspecting the pixel", lambda: c.inspector.update(c.own_traced, not c.motion.is_animating))
+    step("Running the paper's text", lambda: c.stepping.update(c.own_traced, not c.motion.is_animating))
     step("Listing the scene", lambda: c.table.update(c.own_traced))
     step("Compiling the method", c.loader.compile_method)
     step("Asking for the next frame", lambda: c.scheduler.request(c.frame_inputs(size)))

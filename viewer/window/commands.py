@@ -25,7 +25,7 @@ from viewer.state.views import View
 from viewer.util import resources
 from viewer.window.command import Command, Condition, scene_open
 from viewer.window.layout import WORKSPACES, Workspace
-from viewer.window.panels import rays, what_if
+from viewer.window.panels import paper, rays, what_if
 from viewer.window.panels.camera import camera_commands, time_commands
 from viewer.window.panels.compare import compare_commands
 from viewer.window.panels.find import FindState
@@ -262,6 +262,7 @@ def _culling(ui: Ui) -> list[Command]:
         Command("Trace again", "Culling", c.scheduler.trace_again, "T",
                 tip="trace the same frame once more, with what is known after the last one"),
         setting_command(ui, "pace.keep_tracing", "Culling", "K"),
+        *paper.commands(ui),
     ]  # fmt: skip
 
 

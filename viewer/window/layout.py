@@ -22,6 +22,7 @@ from viewer.window.panels import (
     hunt,
     inspector,
     light_buffer,
+    paper,
     picture,
     pixels,
     plots,
@@ -56,6 +57,7 @@ PANELS: dict[str, Callable[[Ui], None]] = {
     "What if": what_if.show,
     "Pixels": pixels.show,
     "Light buffer": light_buffer.show,
+    paper.PAPER: paper.show,
     "Rendering": view.show_rendering,
     "Camera": camera.show,
     "Saving": saving.show,
@@ -71,7 +73,7 @@ _RUNS = ("Experiment", "Zoom test", "Hunt")
 _PLACES = {
     _COLUMN: ("View", "Culling", "Figure 1", "Statistics", "Scene", "Rendering", "Camera", "Saving", "Film"),
     _ANSWERS: ("Inspector", "Plots", "What if"),
-    _TABLES: (*_RUNS, "Find", "Pixels", "Compare", "Light buffer", "Log"),
+    _TABLES: (*_RUNS, "Find", "Pixels", "Compare", "Light buffer", paper.PAPER, "Log"),
     TOUR: (TOUR,),
 }
 """Where panels are: in a column as high as the window, or in a part below it for what is pointed at; below the picture,

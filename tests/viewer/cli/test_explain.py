@@ -81,3 +81,21 @@ def test_json_adds_up(run: Run) -> None:
     assert all((shadow["blocker"] is None) == shadow["lit"] and not shadow["wrong"] for shadow in shadows)
     assert all(ray["parent"] is None or rays[ray["parent"]]["bounce"] + 1 == ray["bounce"] for ray in rays)
     assert [sum(ray["light"][i] for ray in rays) for i in range(3)] == pytest.approx(told["color"], rel=1e-6)
+
+
+def test_steps_print_the_text_as_it_runs_in_each_frame(run: Run) -> None:
+    """First all is INIT and every ray is traced; in the second frame modes let a ray ask dynamic objects only."""
+    out = run.ok(*ROOM, "--method", "paper", "--pixel", "24,16", "--steps")
+    first, second = out.split("frame 2 of 2")
+    assert first.startswith("room.aff, 0.000 s, pixel 24,16 of 48 × 32, method paper, frame 1 of 2")
+    assert [n for n in ("2.3", "2.4", "2.5", "2.6") if f"§{n} " in first] == ["2.3", "2.4", "2.5", "2.6"]
+    assert re.search(r"modes.occlusion\[\d+\]: 00 INIT → 10 FULLY_RENDERED", first)
+    assert re.search(r"modes.shadow\[\d+, 0\]: 00 INIT → 10 NON_SHADOW", first) and "other pixels" in first
+    assert "counts[DYNAMIC_ONLY]: 0 → 1" in second and "in_shadow = _blocked" not in second
+    one = run.ok(*ROOM, "--method", "paper", "--pixel", "24,16", "--steps", "--light", 1, "--repeat", 0)
+    assert "light 1, primary ray" in one and "light 0, primary ray" not in one and "frame 1 of 1" in one
+    assert "these are the steps that Paper would take" in run.ok(
+        *ROOM, "--pixel", "24,16", "--steps", "--method", "none"
+    )
+    said = run.fails(*ROOM, "--method", "cells", "--pixel", "24,16", "--steps")
+    assert "keeps modes of cells, and the text speaks of primitives" in said

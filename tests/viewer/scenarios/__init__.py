@@ -22,6 +22,7 @@ from tests.viewer.scenarios.panels import hiding, looks, panels
 from tests.viewer.scenarios.runs import asking, experimenting, figures, filming, zooming
 from tests.viewer.scenarios.savings import savings
 from tests.viewer.scenarios.starting import starting
+from tests.viewer.scenarios.stepping import stepping
 from tests.viewer.scenarios.taking import taking
 from tests.viewer.scenarios.touring import touring
 from tests.viewer.scenarios.what_if import what_if

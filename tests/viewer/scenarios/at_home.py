@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.viewer.driver import SMALL, Driver
+from tests.viewer.driver import Driver
 from viewer.state.views import View
 from viewer.window.menus import ANY_POPUP
 from viewer.window.panels.command_palette import Finder
@@ -19,7 +19,6 @@ PEN = "\uf304"
 
 def at_home(d: Driver) -> None:
     """One thing after another, as somebody would who settles in."""
-    d.resize(*SMALL).settle()
     _palette(d)
     _undo(d)
     _presets(d)

@@ -6,14 +6,13 @@ import numpy as np
 from imgui_bundle import imgui
 
 from tests.viewer.drawn import picture
-from tests.viewer.driver import SMALL, Driver
+from tests.viewer.driver import Driver
 from viewer.state.pixels import Zoom, around, pixel_at, pixels_shown
 from viewer.state.views import View
 
 
 def closeup(d: Driver) -> None:
     """Ctrl and the wheel zoom around the pointer, and what is clicked then is the pixel that is seen there."""
-    d.resize(*SMALL)
     d.fix_resolution(320, 240)
     d.c.preferences.pixel_values = False
     d.see(View.COLOR, legend=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tests.viewer.drawn import picture
-from tests.viewer.driver import SMALL, Driver
+from tests.viewer.driver import Driver
 from tests.viewer.scenarios.fitting import check_fit
 from viewer.state.comparison import CompareMode
 from viewer.state.draw_options import Curve, Tone
@@ -18,7 +18,6 @@ from viewer.window.panels.sides import filling
 
 def comparing(d: Driver) -> None:
     """What was kept stays as it was, and is seen in each way beside what is changed since; saved as it is seen."""
-    d.resize(*SMALL)
     d.fix_resolution(160, 120)
     d.change(method="none")
     comparing = d.c.comparing

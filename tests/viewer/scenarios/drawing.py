@@ -17,7 +17,7 @@ from viewer.util.resources import embedded_scenes
 from viewer.views.wipe import wipe_column
 
 LEGEND = "//Picture/legend"
-OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS)  # see `culling`
+OF_SOME_FRAMES = (View.CUTS, View.VOXELS, View.CELL_LIGHTS, View.SLACK, View.REGRET)  # of other methods
 
 
 def views(d: Driver) -> None:
@@ -38,7 +38,7 @@ def views(d: Driver) -> None:
         assert view.records or d.c.history.frames == before, "changing the view has traced"
         d.settle()
         there = can_draw(d.c.frame, view, d.c.session.draw.light)
-        assert there == (view not in OF_SOME_FRAMES) and d.has(LEGEND) == (there and view != View.COLOR)
+        assert there == (view not in OF_SOME_FRAMES) and d.has(LEGEND) == (there and view != View.COLOR), view
         if there:
             d.expect_picture()
         if d.has(LEGEND):

@@ -9,12 +9,11 @@ from unittest import mock
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.viewer.driver import SMALL, Driver
+from tests.viewer.driver import Driver
 
 
 def navigating(d: Driver) -> None:
     """All of them in turn."""
-    d.resize(*SMALL).settle()
     _bookmarks(d)
     _texts(d)
     _drags(d)

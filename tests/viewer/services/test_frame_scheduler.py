@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from concurrent.futures import Future
 from dataclasses import replace
 from threading import Event, Thread
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from tests.viewer.fakes import make_frame, make_scene
+from tests.viewer.fakes import make_frame, make_scene, with_certificates
 from tracer.culling.mode_changes import ModeChanges
 from tracer.frame import Settings
 from tracer.scene.lights import Light
@@ -183,6 +185,41 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
         window.rest()
         asked = window.renders.asked[-1].settings
         assert not asked.record_lights and not asked.record_fates and window.scheduler.title == title
+
+
+def test_what_the_renderer_is_asked_for_is_shown_till_the_next_frame_has_its_own(monkeypatch: pytest.MonkeyPatch):
+    window, futures = Window(method="certified"), {}
+    scheduler, shown = window.scheduler, lambda: window.scheduler.frame.layers["slack 0"][0, 0]
+
+    def query(function, frame, *rest):
+        return futures.setdefault(id(frame.primitive), (Future(), function, frame, rest))[0]
+
+    window.renders.query = query
+    monkeypatch.setattr(type(View.SLACK.declared), "asks", staticmethod(lambda number, *rest: {"slack 0": number}))
+
+    def trace(**elsewhere: Any) -> None:
+        scheduler.trace_once_more()
+        window.request()
+        scheduler.take()
+        scheduler.traced = replace(scheduler.traced, frame=with_certificates(replace(scheduler.frame, **elsewhere)))
+        scheduler.record_light()
+
+    def answer(number: float) -> None:
+        future, function, *asked = list(futures.values())[-1]
+        future.set_result(function(np.full((8, 16), number), asked[0], *asked[1], lambda: False))
+        scheduler.record_light()
+
+    window.session.set_draw(view=View.SLACK)
+    trace()
+    assert scheduler.drawn_view is View.COLOR and scheduler.title == "Slack: counting ..."
+    answer(1.0)
+    assert scheduler.drawn_view is View.SLACK and shown() == 1.0
+    trace()
+    assert scheduler.drawn_view is View.SLACK and shown() == 1.0
+    answer(2.0)
+    assert shown() == 2.0 and len(futures) == 2
+    trace(time=9.0)
+    assert scheduler.drawn_view is View.COLOR, "of another moment nothing is known"
 
 
 def test_between_steps_it_is_known_that_more_is_to_come():

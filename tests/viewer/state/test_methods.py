@@ -42,6 +42,7 @@ def test_a_view_that_a_method_has_nothing_for_names_a_method_that_has(view: View
     wrong = "paper", "cells", "lie", *cuts
     shows = {View.CERTIFICATE: ("certified",), View.DIFFERENCE: wrong, View.WIPE: wrong, View.CUTS: cuts}
     shows |= {View.VOXELS: ("voxels",), View.CELL_LIGHTS: ("lie-exact", "lie")}
+    shows |= {View.SLACK: ("certified",), View.REGRET: ("certified",)}
     one_by_one = tuple(kind.name for kind in bases() if kind.name not in cuts)  # rays to single lights
     shows |= {View.FATE: one_by_one, View.MOVING_SHADOW: one_by_one}
     if view not in shows or method.split("+")[0] in shows[view]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui, implot
 
-from tests.viewer.desk import Desk
+from tests.viewer.desk import Desk, place_of
 from viewer.window import commands
 from viewer.window.layout import PANELS
 from viewer.window.panels.plots import as_steps
@@ -64,3 +64,25 @@ def test_a_panel_shows_every_setting_that_is_declared_for_it(
 def test_curves_are_level_over_each_picture() -> None:
     x, y = as_steps(np.array([1.0, 5.0]), 9.5)
     assert x.tolist() == [9.5, 10.5, 10.5, 11.5] and y.tolist() == [1.0, 1.0, 5.0, 5.0]
+
+
+def test_the_papers_text_stands_with_values_beside_what_has_run(written: Callable[[str], str], desk: Desk) -> None:
+    stepping = desk.c.stepping
+    assert "Click a pixel" in written("Paper")
+    desk.c.settings.change(method="paper")
+    desk.c.selection.select(place_of(desk.c, lit=False, near=2))
+
+    def shown() -> str:
+        """What is written, while somebody looks."""
+        said = written("Paper")
+        desk.tick()
+        return said
+
+    desk.until(lambda: "step 1 of" in shown())
+    stepping.go(1)
+    said = shown()
+    assert "def reached_by_light(work, primitive, point, light):" in said and "§2.3 occlusion testing, pixel" in said
+    assert f"current = {desk.c.selection.picked.primitive}" in said and "height = 48, width = 64" in said
+    desk.c.settings.change(method="cells")
+    desk.until(lambda: "the text speaks of primitives" in shown())
+    assert "Use Paper" in shown()

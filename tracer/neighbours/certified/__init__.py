@@ -15,7 +15,7 @@ test candidates instead of the tree (`candidates`).  Where they find too little 
 `scheduler` spends a budget on what is requested most, by what certificates are worth (`cost_model`): requests are
 gathered into tasks (`gather_requests`), which are run in parallel (`tasks`).  The `store` holds what is known, and
 drops what no longer holds when something moves (`invalidate`).  What a cancelled frame has certified can be undone
-(`journal`).
+(`journal`).  `slack` tells those who look how far a light may move before they fail.
 
 Only `tracer.methods.certified` uses it.  docs/certified-cells.md tells it all.
 """

@@ -40,7 +40,7 @@ def _names_one(cells, cell, light, gone):
 @subkernel
 def _meets_any(s, boxes, light):
     """Whether a box (k, 6) may meet the shaft from a light (3,) to the cell that s.shaft was put to."""
-    if not put_light(s.shaft, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2]))):
+    if not put_light(s.shaft, (np.float64(light[0]), np.float64(light[1]), np.float64(light[2])), 0.0):
         return True
     met = False
     for k in range(len(boxes)):

@@ -142,6 +142,15 @@ class CertificateStore:
         return self._static.occluders
 
     @property
+    def bounds(self) -> NDArray[np.float64]:
+        """(2, 3) the lower and the upper corner around it."""
+        return self._static.bounds
+
+    def occluders_in_ball(self, light: int, radius: float) -> Occluders:
+        """The same, fitted to a ball around one of the lights."""
+        return self._static.in_ball(light, self.lights, radius, self.scale.max_height)
+
+    @property
     def bytes(self) -> int:
         """Memory that the cells take, in bytes."""
         return bytes_of(self.cells)
@@ -344,7 +353,7 @@ class CertificateStore:
         """What is certified for a light of the cell in which shadow rays end at a point (3,) above a primitive.
 
         One of STATES, and the numbers of the primitives that it names."""
-        number = self._leaf_at(primitive, np.asarray(point, np.float64))
+        number = self.place_of(primitive, point)[3]
         state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < self.count else 0
         names = named_by(self.cells, self.naming(number, light) if state == FULL else number, light)
         return STATES[state], tuple(int(name) for name in (() if names is None else names))
@@ -355,14 +364,15 @@ class CertificateStore:
             cell = int(self.cells.parent[cell])
         return cell
 
-    def _leaf_at(self, primitive: int, point: NDArray[np.float64]) -> int:
-        """The leaf in which a point above a primitive lies; 0 for none."""
+    def place_of(self, primitive: int, point: ArrayLike) -> tuple[int, float, float, int]:
+        """The owner, -1 for none, of which shadow rays end at a point (3,) above a primitive; u and v there; and the
+        leaf, 0 for none."""
         row = self.cells.receivers[primitive].astype(np.float64)
-        to = point - row[CORNER : CORNER + 3]
+        to = np.asarray(point, np.float64) - row[CORNER : CORNER + 3]
         u, v, height = (float(row[at : at + 3] @ to) for at in (ALONG_U, ALONG_V, NORMAL))
         number = int(self.cells.receivers.view(np.int32)[primitive, ROOTS + (height < 0.0)])
-        u, v = min(max(u, 0.0), 1.0), min(max(v, 0.0), 1.0)
+        u, v = x, y = min(max(u, 0.0), 1.0), min(max(v, 0.0), 1.0)
         while self.cells.child[number] >= 0:
-            part, u, v = part_of.py_func(u, v)
+            part, x, y = part_of.py_func(x, y)
             number = int(self.cells.child[number]) + part
-        return number
+        return 2 * primitive + (height < 0.0) if row[NORMAL : NORMAL + 3].any() else -1, u, v, number

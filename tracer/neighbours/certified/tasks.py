@@ -137,7 +137,7 @@ def put_cell_of(cells, o, cell, scale, s):
 @subkernel
 def _certify(cells, o, place, light, cell, few, s, counts):
     """Certify the cell that the worker's shaft was put to for a light at a place: (state, how many it names)."""
-    if not put_light(s.shaft, place):
+    if not put_light(s.shaft, place, 0.0):
         return np.int64(CANDIDATES), np.int64(TOO_MANY)
 
     # Start from the candidates of the cell that this one is a part of, where they are known.

@@ -11,7 +11,7 @@ from tracer.inspect.projection import Stroke, strokes
 from tracer.inspect.reasons import Why
 from tracer.method import title_of
 from viewer.state.methods import missing, with_base
-from viewer.state.palette import BLOCKED, CANDIDATES, OCCLUSION, UNKNOWN
+from viewer.state.palette import BLOCKED, CANDIDATES, HELD, OCCLUSION, UNKNOWN
 from viewer.state.picking import outline_of, points_of, primitive_points
 from viewer.window.panels import rays
 from viewer.window.panels.area import BACK, FRONT, SHADE, WHITE, Area, Pen
@@ -24,6 +24,7 @@ _MOST_NAMED = 8  # of which so many are outlined
 _OUTLINE = 0.13  # width in ems
 _HIDER = ImVec4(*OCCLUSION[OcclusionMode.PARTIALLY_OCCLUDED].color, 1.0)
 _SAME, _MISSED = ImVec4(*UNKNOWN, 1.0), ImVec4(*OCCLUSION[OcclusionMode.FULLY_RENDERED].color, 1.0)
+_STEPPED = ImVec4(*HELD, 1.0)  # what a step of the paper speaks of
 _SIDE = 0.5  # ems, of a pixel's square at least
 _NOTE, _LEAST = 26.0, 8.0  # in ems of width: of a note, and of a picture that has room for one
 
@@ -37,6 +38,7 @@ def show(ui: Ui, area: Area) -> None:
     rays.draw(ui, made, frame)
     _why(ui, made, frame)
     _occluded_selection(ui, made, frame)
+    _step(ui, made, frame)
 
 
 # --- why -------------------------------------------------------------------------------------------
@@ -98,6 +100,15 @@ def _square_of(made: Pen, frame: Frame, pixel: tuple[int, int]) -> tuple[ImVec2,
     """The middle of a pixel on the screen, and the size of its square there."""
     middle = made.to_screen((pixel[0] + 0.5) / frame.width, (pixel[1] + 0.5) / frame.height)
     return middle, (max(made.pixel[0], em(_SIDE)), max(made.pixel[1], em(_SIDE)))
+
+
+def _step(ui: Ui, made: Pen, frame: Frame) -> None:
+    """The pixels and primitives that the line of the paper's text speaks of."""
+    step = ui.controller.stepping.step_in(frame)
+    for number in dict.fromkeys(step.primitives[:_MOST_NAMED] if step is not None else ()):
+        _outline(ui, made, frame, number, _STEPPED, f"stepped {number}")
+    for number, pixel in enumerate(step.pixels if step is not None else ()):
+        made.square(*_square_of(made, frame, pixel), _STEPPED if number else WHITE)
 
 
 # --- what is selected -------------------------------------------------------------------------------

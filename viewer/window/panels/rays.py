@@ -223,7 +223,10 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
     """Draw the rays that are listed or, where none are, the shadow rays of the clicked point; those of the rows and of
     the light that are selected or pointed at stand out."""
     state, pointed, c = ui.state(RaysState), ui.state(Pointed), ui.controller
-    light, pointed.light = pointed.light, None  # the panel says so in each frame
+    (of, light), pointed.light = (0, pointed.light), None  # the panel says so in each frame
+    step = c.stepping.step_in(frame)
+    if light is None and step is not None and step.part.light >= 0:
+        of, light = step.part.ray, step.part.light
     tree, listed = c.inspector.tree, are_listed(ui)
     if tree is None or c.selection.picked is None or not (listed or c.session.draw.rays):
         return
@@ -234,7 +237,7 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
     selected = next((row for _, row in rows(ui) if row.key == state.selected), None) if listed else None
     chosen = [row for row in (selected, state.pointed) if row is not None and listed]
     standing_out: list[RayLine] = ui.cached(
-        "rays that stand out", lines, (chosen, light), lambda: _standing_out(tree, frame, lines, chosen, light)
+        "rays that stand out", lines, (chosen, of, light), lambda: _standing_out(tree, frame, lines, chosen, of, light)
     )
     for line in lines:
         _line(made, line, _FADED if standing_out else 1.0, 0.55 if len(lines) > _MANY else 1.0)
@@ -244,14 +247,14 @@ def draw(ui: Ui, made: Pen, frame: Frame) -> None:
 
 
 def _standing_out(
-    tree: RayTree, frame: Frame, lines: Sequence[RayLine], chosen: Sequence[RayRow], light: int | None
+    tree: RayTree, frame: Frame, lines: Sequence[RayLine], chosen: Sequence[RayRow], of: int, light: int | None
 ) -> list[RayLine]:
-    """The lines of chosen rows' rays, and of the clicked point's shadow rays to a light."""
+    """The lines of chosen rows' rays, and of the shadow rays to a light from where ray number `of` ends."""
     found = [line for row in chosen for line in lines if line.ray == row.ray and line.place < 0 and not len(row.places)]
     groups = [(row.ray, row.places) for row in chosen if len(row.places)]
-    s = tree.rays[0].shadows
+    s = tree.rays[of].shadows if of < len(tree.rays) else None
     if light is not None and s is not None:
-        groups.append((0, RayFilter(RaySubset.ALL, light).places(s)))
+        groups.append((of, RayFilter(RaySubset.ALL, light).places(s)))
     for ray, places in groups:
         found += _shadow_lines(frame, tree, ray, places[:: -(-len(places) // _MOST_CHOSEN) or 1])
     return found

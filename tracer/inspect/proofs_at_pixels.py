@@ -1,0 +1,79 @@
+"""What certificates of cells are worth at each pixel of a picture that is there already.
+
+*Slack* is how far a light may surely move before the certificate of a pixel's cell fails.  *Regret* is how many shadow
+rays of a primary hit were traced although the smallest cell at their point can be proved: a better method would have
+saved them.
+
+Both take a whole frame by a method with certificates of cells, and the renderer that made it; what this knows now
+counts, which may be more.  They raise LookupError where it has no certificates of cells for the lights as they were in
+the frame, and Cancelled once `cancelled()` is true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracer.culling.fate import FATE, Fate
+from tracer.geometry.camera import pinhole
+from tracer.methods.certified import CertifiedCells
+from tracer.neighbours.certified.cells import ALONG_U, ALONG_V, CORNER, NORMAL
+from tracer.neighbours.certified.slack import SlackFinder, proved_cells
+
+if TYPE_CHECKING:
+    from tracer.frame import Frame
+    from tracer.renderer import Renderer
+
+Cancel = Callable[[], bool] | None
+
+
+def _finder_for(renderer: Renderer, frame: Frame) -> SlackFinder:
+    method = renderer.state.method("certified")
+    if not isinstance(method, CertifiedCells) or method.store is None or frame.cells is None:
+        raise LookupError("the frame has no certificates of cells")
+    there = renderer.scene.light_positions(frame.time)[: method.store.count].astype(np.float32)
+    if not np.array_equal(method.store.lights, there):
+        raise LookupError("another frame has begun, with lights elsewhere")
+    return method.slack
+
+
+def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
+    """(h, w) the slack of a light's certificates, in units of the scene; -1 where none says all."""
+    finder = _finder_for(renderer, frame)
+    cells, cell, slack = finder.store.cells, frame.cells, np.full(frame.primitive.shape, -1.0, np.float32)
+    assert cell is not None, "there are certificates"
+    if light < finder.store.count and finder.store.certified[light]:
+        there = (cell > 0) & (cell < cells.used[0])
+        there[there] = cells.owner[cell[there]] >> 1 == frame.primitive[there]  # cells may have other numbers by now
+        which, inverse = np.unique(proved_cells(cells, cell[there], light), return_inverse=True)
+        found = np.full(len(which), -1.0, np.float32)
+        found[which > 0] = finder.of_cells(which[which > 0], light, cancelled)
+        slack[there] = found[inverse]
+    return slack
+
+
+def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None) -> NDArray[np.int32]:
+    """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
+    `record_fates`."""
+    finder, rays = _finder_for(renderer, frame), pinhole(frame.camera, frame.width, frame.height)
+    if frame.fates is None or frame.cells is None:
+        raise ValueError("the frame did not record what became of its shadow rays")
+    certified = finder.store.certified
+    traced = (frame.fates[..., : len(certified)] & FATE == Fate.TRACED) & certified
+    y, x, light = np.nonzero(traced & (frame.primitive >= 0)[..., None])
+    row = finder.store.cells.receivers[frame.primitive[y, x]]
+    with_cells = row[:, NORMAL : NORMAL + 3].any(axis=1)
+    y, x, light, row = y[with_cells], x[with_cells], light[with_cells], row[with_cells].astype(np.float64)
+    way = rays.corner + x[:, None] * np.asarray(rays.column) + y[:, None] * np.asarray(rays.row)
+    way *= frame.depth[y, x, None] / np.linalg.norm(way, axis=1, keepdims=True)
+    eye = np.asarray(rays.origin) - row[:, CORNER : CORNER + 3]
+    u, v = (np.einsum("ij,ij->i", eye + way, row[:, at : at + 3]) for at in (ALONG_U, ALONG_V))
+    owner = 2 * frame.primitive[y, x] + (np.einsum("ij,ij->i", eye, row[:, NORMAL : NORMAL + 3]) < 0.0)
+    cell = np.clip(frame.cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
+    proved = finder.are_provable(owner.astype(np.int32), u, v, cell, light.astype(np.int32), cancelled)
+    regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
+    np.add.at(regret, (y[proved], x[proved]), 1)
+    return regret

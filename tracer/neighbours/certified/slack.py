@@ -1,0 +1,192 @@
+"""How far a light may move before a certificate fails, its *slack*; and what could be proved of the smallest cells.
+
+Where functions, boxes and planes are those of a ball around the light, a proof holds wherever in the ball the light is
+(`tracer.visibility`).  So a certificate is proved anew for balls, larger and smaller ones, until the largest is found
+that can be: no light that moves by less makes it untrue.  It may hold for longer.
+
+Of a ray that was traced, the smallest cell around its point tells whether certificates could have known the answer:
+a larger one has more to prove.  Nothing here is done unless somebody wants to look at it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracer.neighbours.certified.cell_prism import put_cell
+from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, OVERFLOW, SETTLED, TOO_MANY, Cells
+from tracer.neighbours.certified.certify import certify, make_scratch
+from tracer.neighbours.certified.tasks import DEEPEST, SMALLEST
+from tracer.runtime.kernels import kernel, subkernel
+from tracer.runtime.parallel import for_each_chunk
+from tracer.visibility.budget import COUNTERS
+from tracer.visibility.occluders import Occluders
+from tracer.visibility.shaft import put_light
+
+if TYPE_CHECKING:
+    from tracer.neighbours.certified.store import CertificateStore
+
+PART = 0.25  # of the diagonal of all that is static: slack is told up to that
+TRIED, HALVING = 256, 16  # radii of balls, and after how many of these they are half as large
+CHUNK = 64  # places that a thread takes at a time
+Cancel = Callable[[], bool] | None
+
+
+class Places(NamedTuple):
+    """n cells, there or not, each with a light.
+
+    Attributes:
+        owner: (n,) int32, as in `Cells`.
+        place: (n, 3) float32, as in `Cells`.
+        light: (n,) int32.
+        names: (m,) int32, numbers of primitives.
+        first, length: (n,) int32, where in these the only ones begin that need be asked, and how many; 0 for all.
+    """
+
+    owner: NDArray[np.int32]
+    place: NDArray[np.float32]
+    light: NDArray[np.int32]
+    names: NDArray[np.int32]
+    first: NDArray[np.int32]
+    length: NDArray[np.int32]
+
+
+@subkernel
+def _is_proved(o, lights, places, i, radius, s, counts):
+    """Whether the cell that s.shaft was put to is proved to be hidden from a ball of light, or lit by all of it."""
+    number, first, count = np.int64(places.light[i]), np.int64(places.first[i]), np.int64(places.length[i])
+    light = np.float64(lights[number, 0]), np.float64(lights[number, 1]), np.float64(lights[number, 2])
+    if not put_light(s.shaft, light, radius):
+        return False
+    given, asked = places.names[first : first + count], count if count > 0 else np.int64(TOO_MANY)
+    state, _amount = certify(s, o, number, light, given, asked, 0, counts)
+    return state in (FULL, LIT)
+
+
+@kernel
+def find_slack(o, lights, scale, places, most, first, last, slack, s):
+    """Find the slack (n,) float32 of places first to last - 1, at most `most`, and -1 where nothing is proved.
+
+    o are the `Occluders`, fitted to balls of this radius around lights (n, 3) float32; scale is the `SceneScale`, s a
+    worker's `Scratch`."""
+    counts, tried = np.zeros(COUNTERS, np.int64), TRIED if most > 0.0 else 0
+    for i in range(first, last):
+        owner, u, v, size = np.int64(places.owner[i]), places.place[i, 0], places.place[i, 1], places.place[i, 2]
+        side = 1.0 - 2.0 * (owner & 1)
+        slack[i] = -1.0
+        if not put_cell(s.shaft, o.rows, owner >> 1, side, np.float64(u), np.float64(v), np.float64(size), scale):
+            continue
+
+        # Halve the range of radii, of which the last is 0, down to the largest for which there is a proof.
+        low, high, radius = 0, tried + 1, 0.0
+        while low < high:
+            middle = (low + high) // 2
+            tries = most * 2.0 ** (-middle / HALVING) if middle < tried else 0.0
+            if _is_proved(o, lights, places, i, tries, s, counts):
+                high, radius = middle, tries
+            else:
+                low = middle + 1
+        if low <= tried:
+            slack[i] = radius
+
+
+class SlackFinder:
+    """Finds slack in a store, whose lights and objects are where they were when it was updated last."""
+
+    def __init__(self, store: CertificateStore) -> None:
+        self.store = store
+        self._fitted: dict[int, tuple[Occluders, bytes, Occluders]] = {}  # by light: fitted to a ball, and what of
+
+    @property
+    def most(self) -> float:
+        """No more slack is told, in units of the scene."""
+        low, high = self.store.bounds
+        return PART * float(np.linalg.norm(high - low))
+
+    def of_cells(self, cell: NDArray[np.int32], light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
+        """(n,) how far a light may surely move for its certificates of cells (n,), FULL or LIT, to hold."""
+        cells, lights = self.store.cells, np.full(len(cell), light, np.int32)
+        places = Places(cells.owner[cell], cells.place[cell], lights, cells.names, *_lists(cells, cell, lights))
+        return np.maximum(self._find(self._in_ball(light), places, self.most, cancelled), np.float32(0.0))
+
+    def are_provable(
+        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, cell: NDArray[np.int32], light: NDArray[np.int32],
+        cancelled: Cancel = None,
+    ) -> NDArray[np.bool_]:  # fmt: skip
+        """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them.
+
+        The points may lie in cells (n,), 0 for none: of these certificates may name all that there is to ask."""
+        store, cells = self.store, self.store.cells
+        place = smallest_at(u, v, levels_of(store.occluders.rows[owner >> 1], store.scale.max_height))
+        # Of cells that are nested, one is a part of the other if its middle is in it.
+        middle, (u0, v0, size) = place + place[:, 2:] / 3.0, cells.place[cell].T
+        x, y = (middle[:, 0] - u0) * np.sign(size), (middle[:, 1] - v0) * np.sign(size)
+        inside = (cells.owner[cell] == owner) & (x > 0.0) & (y > 0.0) & (x + y < abs(size))
+        first, count = _lists(cells, np.where(inside, cell, np.int32(0)), light)
+        places = Places(owner, place, light, cells.names, first, count)
+        return self._find(store.occluders, places, 0.0, cancelled) >= 0.0
+
+    def _in_ball(self, light: int) -> Occluders:
+        """The occluders fitted to a ball around a light, made when a light is asked about that has moved."""
+        store, place = self.store, self.store.lights[light].tobytes()
+        known = self._fitted.get(light)
+        if known is None or known[0] is not store.occluders or known[1] != place:
+            known = self._fitted[light] = store.occluders, place, store.occluders_in_ball(light, self.most)
+        return known[2]
+
+    def _find(self, occluders: Occluders, places: Places, most: float, cancelled: Cancel) -> NDArray[np.float32]:
+        store, slack = self.store, np.empty(len(places.owner), np.float32)
+        scratch = [make_scratch() for _ in range(store.threads)]
+
+        def work(chunk: int, worker: int) -> None:
+            rows = chunk * CHUNK, min(len(slack), (chunk + 1) * CHUNK)
+            find_slack(occluders, store.lights, store.scale, places, most, *rows, slack, scratch[worker])
+
+        for_each_chunk(work, -(-len(slack) // CHUNK), store.threads, cancelled)
+        return slack
+
+
+def _lists(
+    cells: Cells, cell: NDArray[np.int32], light: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Where in names the lists of certificates of cells (n,) for lights (n,) begin, and how long they are; 0 for all
+    that there is."""
+    at = cells.lists[cell, light]
+    return at + np.int32(1), np.where(at == OVERFLOW, np.int32(0), cells.names[at] & np.int32(SETTLED - 1))
+
+
+def proved_cells(cells: Cells, cell: NDArray[np.int32], light: int) -> NDArray[np.int32]:
+    """The cells (n,) of which the certificates, FULL or LIT, of cells (n,) were proved: these themselves, or such that
+    they are parts of; 0 for none."""
+    states = (cells.words[cell].astype(np.int64) >> (2 + 2 * light)) & 3
+    cell = np.where((states == FULL) | (states == LIT), cell, np.int32(0))
+    while True:
+        parent = cells.parent[cell]
+        whole = ((cells.words[parent].astype(np.int64) >> (2 + 2 * light)) & 3) == states
+        rises = (cell > 0) & (parent > 0) & whole & ((states == LIT) | (cells.lists[cell, light] == NOBODY))
+        if not rises.any():
+            return cell
+        cell = np.where(rises, parent, cell)
+
+
+def levels_of(rows: NDArray[np.float32], highest: float) -> NDArray[np.float64]:
+    """(n,) how often triangles, rows (n, ROW), can be divided, where rays end no higher above them than `highest`."""
+    shortest = np.linalg.norm(rows[:, 3:9].astype(np.float64).reshape(-1, 2, 3), axis=2).min(1)
+    most = np.log2(np.maximum(shortest / (SMALLEST * highest), 1.0))
+    return np.clip(np.ceil(most) - 1.0, 0.0, -np.log2(DEEPEST))
+
+
+def smallest_at(u: ArrayLike, v: ArrayLike, levels: ArrayLike) -> NDArray[np.float32]:
+    """(n, 3) u, v and size of the cells at points (n,), in triangles that are divided so often (n,)."""
+    parts = np.exp2(np.asarray(levels, np.float64))
+    x, y = (np.clip(np.asarray(at, np.float64), 0.0, 1.0) * parts for at in (u, v))
+    column, row = np.floor(x), np.floor(y)
+    down = (x - column + y - row > 1.0) & (column + row + 2.0 <= parts)  # the middle one of four, upside down
+    beyond = np.maximum(column + row + 1.0 - parts, 0.0)  # points on the far edge
+    back = np.minimum(beyond, column)
+    column, row = column - back, row - (beyond - back)
+    place = np.stack([column + down, row + down, np.where(down, -1.0, 1.0)], 1) / parts[:, None]
+    return place.astype(np.float32)
