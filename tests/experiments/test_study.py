@@ -68,6 +68,8 @@ def test_changes_are_said(tmp_path: Path) -> None:
     other = read(tmp_path, GOOD.replace('"paper",', '"cells",').replace("frames = 8", "frames = 9")).to_json()
     assert differences(one, other) == ["methods: + cells, - paper", "frames of the path: 8 → 9"]
     assert differences(one, one) == []
+    many, others = list(range(100_000)), list(range(1, 100_001))
+    assert differences({"seeds": many}, {"seeds": others}) == ["seeds: + 100000, - 0"], "and at once"
 
 
 @pytest.mark.parametrize(
@@ -91,6 +93,8 @@ def test_changes_are_said(tmp_path: Path) -> None:
         ("seeds = [1, 2]", "seeds = 1", "line 9: seeds: expected a list, got a whole number"),
         ("seeds = [1, 2]", "seeds = [1, 2", "not TOML: "),
         ("seeds = [1, 2]", f"seeds = {'[' * 5000}{']' * 5000}", "its values are nested too deeply"),
+        ("seeds = [1, 2]", f"a{'.a' * 50_000} = 1", "its values are nested too deeply"),
+        ('"default"', f'"{"x" * 5000}"', "line 2: scenes: no file "),
         ("[path]\nframes = 8\nlast = 5", "path = 3", "line 11: path: expected a table, got a whole number"),
         ("sizes =", 'sizes = ["1x1"]\nsizes =', "line 9, column"),
     ],

@@ -27,7 +27,7 @@ from tracer.experiments.experiment import path_times
 from tracer.method import Method
 from tracer.scene.arrays import vector
 from tracer.scene.bounds import bounds
-from tracer.scene.files import read_regular
+from tracer.scene.files import read_regular, stamp
 from tracer.scene.model import Camera, Scene
 from tracer.settings import RECORDS, Settings
 from tracer.util.setting import kinds_in_words, settings_of
@@ -193,7 +193,9 @@ def differences(kept: dict[str, Any], now: dict[str, Any]) -> list[str]:
         if old == new:
             continue
         if isinstance(old, list) and isinstance(new, list):
-            more = [f"+ {value}" for value in new if value not in old] + [f"- {v}" for v in old if v not in new]
+            before, after = (dict.fromkeys(map(str, values)) for values in (old, new))
+            more = [f"+ {value}" for value in after if value not in before]
+            more += [f"- {value}" for value in before if value not in after]
             found.append(f"{key}: {', '.join(more) or 'in another order'}")
         else:
             found.append(f"{key}: {old} → {new}")
@@ -253,6 +255,10 @@ _TAKES = {
 }
 """What is said of a value that is none, where the types above give a range."""
 
+_STRING = re.compile(r'"(?:\\.|[^"\\\n])*+"' + r"|'[^'\n]*+'")
+_DEEP_KEY = re.compile(r"(?:\.[^.,\n]*+){20}")
+"""A key of so many parts as no study has: tomllib takes the square of them in memory."""
+
 
 class StudyError(ValueError):
     """A study cannot be read; the message is one line."""
@@ -264,6 +270,8 @@ def read_study(path: Path, own_scenes: Mapping[str, Path]) -> Study:
     Raises StudyError and OSError, in one line that names the file, the line in it and the key."""
     try:
         text = read_regular(path, MOST_BYTES).decode("utf-8")
+        if _DEEP_KEY.search(_STRING.sub('""', text)):
+            raise RecursionError
         data = tomllib.loads(text)
     except FileNotFoundError:
         raise OSError(f"{path}: no such file{did_you_mean_file(path)}") from None
@@ -335,7 +343,7 @@ class _Reader:
     def _scene(self, name: str, own_scenes: Mapping[str, Path]) -> Path:
         """The file of a scene: of the program, or beside the study."""
         found = own_scenes.get(name) or self._beside(name)
-        if not found.is_file():
+        if stamp(found) is None or not found.is_file():
             hint = did_you_mean(name, own_scenes) or f" ({', '.join(own_scenes)})"
             raise self._wrong("scenes", "", f"no file {found}, and no scene of the program{hint}")
         return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from argparse import Namespace
 from dataclasses import replace
@@ -36,10 +37,13 @@ from viewer.output.comparison import comparison_of, text_of_pdf
 from viewer.services import stills
 from viewer.services.scene_files import find_scene
 from viewer.state.methods import NO_CULLING
+from viewer.state.plans import MOST_PICTURE_PIXELS
 from viewer.state.view_state import ViewState, Warmup
 from viewer.state.views import View
-from viewer.util.messages import ERROR, in_one_line
+from viewer.util.messages import ERROR, in_one_line, one_line
 
+MOST_PIXELS = MOST_PICTURE_PIXELS * 5 // 4
+"""Of a picture with all that is written above and below it."""
 EPILOG = """\
 examples:
   shadowcull check figure.png
@@ -72,7 +76,8 @@ def run(given: Namespace) -> int:
             try:
                 carried, kept = read(path)
             except (ValueError, OSError, SyntaxError) as error:  # the last is Pillow's
-                why = in_one_line(error if str(path) in str(error) else f"{path}: {error}")
+                why = one_line(error) if isinstance(error, OSError) else in_one_line(error)
+                why = why if str(path) in why else in_one_line(f"{path}: {why}")
                 work.note(f"{ERROR}{why}")
                 good = False
                 continue
@@ -105,11 +110,14 @@ def read(path: Path) -> tuple[Carried, NDArray[Any]]:
         return capture.carried_from_text(path, text), np.frombuffer(file, np.uint8)
     if ending != ".png" and path.is_file():
         raise ValueError(f"{path}: check reads PNG and EXR pictures, and figures as PNG or PDF")
-    return capture.read_carried(path), _pixels(path.read_bytes())
+    carried = capture.read_carried(path)
+    return carried, _pixels(path.read_bytes(), math.inf if carried.figure is not None else MOST_PIXELS)
 
 
-def _pixels(file: bytes) -> NDArray[np.uint8]:
+def _pixels(file: bytes, most: float = math.inf) -> NDArray[np.uint8]:
     with open_image(BytesIO(file), ("PNG",)) as image:
+        if image.width * image.height > most:
+            raise ValueError(f"{image.width} x {image.height} pixels: no picture of Shadowcull has so many")
         return np.asarray(image.convert("RGB"))
 
 

@@ -49,6 +49,8 @@ def failure(error: BaseException, what: str = "", known: tuple[type[BaseExceptio
 def one_line(error: BaseException) -> str:
     """An exception as one line for the status bar; the kind is named unless the message speaks for itself."""
     text = in_one_line(error)
+    if isinstance(error, OSError) and error.errno and error.strerror:  # whose own text begins with "[Errno 36]"
+        text = in_one_line(f"{error.filename}: {error.strerror}" if error.filename else error.strerror)
     if isinstance(error, MemoryError):
         return "out of memory" + (f": {text}" if text else "")
     if isinstance(error, SceneError | ValueError | OSError) and text:

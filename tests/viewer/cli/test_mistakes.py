@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +41,9 @@ MISTAKES = {
         ("render gone.png", "no such file"),
         ("render orphan.png", "its scene is gone"),
         ("render endless.png", "endless.png: its scene is gone"),
+        (f"check {5000 * 'x'}.png", "xxx.png: File name too long"),
+        (5000 * "x", "xxx: File name too long"),
+        ("check large.png", "large.png: 11000 x 11000 pixels: no picture of Shadowcull has so many"),
         ("zoom room.aff --primitive 0 --camera gone.png", "--camera: gone.png: no such file"),
     ],
     "render room.aff": [
@@ -207,6 +211,10 @@ def files(room: Path) -> None:
         state = ViewState(str(Path(scene).absolute()), camera=Camera((0.0, 2.0, 3.0), (0.0, -0.5, -1.0)))
         carried = capture.Carried(codec.state_to_json(state, of_picture=True), state.camera.to_json())
         capture.write(Path(name), np.zeros((4, 4, 3), np.uint8), carried.text())
+    file = bytearray(Path("saved.png").read_bytes())  # whose head says another size
+    file[16:24] = 2 * (11_000).to_bytes(4, "big")
+    file[29:33] = zlib.crc32(file[12:29]).to_bytes(4, "big")
+    Path("large.png").write_bytes(file)
 
 
 def complained(run: Run, command: str) -> str:
