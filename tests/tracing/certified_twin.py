@@ -14,12 +14,13 @@ from tests.sweeps import ACCELERATORS
 from tests.tracing.brute import meet_all
 from tracer.geometry.rays import RAY_OFFSET, ray_batch
 from tracer.neighbours.certified.cell_prism import LOWEST
-from tracer.neighbours.certified.cells import CANDIDATES, FULL, HIGHEST, LIT, named_by, state_of
+from tracer.neighbours.certified.cells import CANDIDATES, FULL, LIT, named_by, state_of
 from tracer.neighbours.certified.store import CertificateStore
 from tracer.runtime.kernels import kernel
 from tracer.simd import address_of, load_columns, load_three
 from tracer.visibility.error_bounds import EPSILON
 from tracer.visibility.light_space import LIGHT_ROW, verdicts
+from tracer.visibility.static_geometry import HIGHEST
 
 LAMP = 1e-5  # of the way from the light: where shadow rays begin
 NAMES = {FULL: "FULL", LIT: "LIT", CANDIDATES: "CANDIDATES"}

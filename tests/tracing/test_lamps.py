@@ -128,7 +128,7 @@ SHAPES = {
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 @pytest.mark.parametrize("kind", SHAPES)
-@pytest.mark.parametrize("samples", [9, 64, 100])
+@pytest.mark.parametrize("samples", [36, 64, 100])
 def test_nearly_all_rays_of_lamps_are_answered_untraced(accelerator: str, kind: str, samples: int):
     """Also those of the penumbra, and all of them rightly."""
     lamp = replace(LAMP, position=(0.3, 0.2, 12.0), kind=kind, samples=samples, **SHAPES[kind])

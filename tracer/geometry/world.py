@@ -145,6 +145,12 @@ class World:
         """Which objects (n,) rays meet where they are known to be, so that something can be proved of them."""
         return self.structure.certain(poses)
 
+    def known_places(self) -> NDArray[np.bool_]:
+        """Which dynamic objects (n,) are there, and met where they are known to be (`certain`)."""
+        known = self._poses.present & self.certain(self._poses)
+        known[0] = False  # what never moves is no object
+        return known
+
     def triangles_of(self, index: int) -> WorldTriangles:
         """The triangles of an object that is present, just as rays meet them."""
         return self.structure.triangles_of(index, self._poses.to_world[index])

@@ -66,7 +66,7 @@ def choose(data, call, light, count, counts):
     if light < len(certified.lamps.known) and certified.lamps.known[light] != 0:
         answers = lamp_answers_in(scratch_of(given)[CELL_POINT_ROWS:])
         if given.nth == 0:
-            find_answers(certified, points, answers, given.samples, given.sample, light, count, i64_at(counts))
+            find_answers(certified, points, answers, batch, given.samples, given.sample, light, count, i64_at(counts))
         answer_sample(answers, given.nth, count, batch, i64_at(counts))
         return
     asks, position = given.bounce >= certified.first_asking, given.samples[given.sample]
@@ -220,7 +220,7 @@ class CertifiedCells(WithStore):
         proved = proved_cells(store.cells, leaf, light)
         if proved[0]:
             slack, most = float(self.slack.of_cells(proved, light)[0]), self.slack.most
-            return f"That stays so until the light moves by {slack:.3g}{' at least' if slack < most else ' or more'}."
+            return f"That stays so while the light moves by less than {slack:.3g}{'' if slack < most else ', or more'}."
         one = np.ones(1, np.int32)
         if owner >= 0 and self.slack.are_provable(owner * one, [u], [v], leaf, light * one)[0]:
             return "Regret: a cell that is small enough can be proved here."

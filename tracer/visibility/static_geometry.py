@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tracer.geometry.boxes import OUTWARDS, PADDING, triangle_boxes
 from tracer.geometry.memory import aligned_rows
 from tracer.geometry.primitives import Outlines
+from tracer.geometry.rays import RAY_OFFSET
 from tracer.geometry.wide_tree.topology import WIDTH, Topology
 from tracer.runtime.parallel import for_each_chunk
 from tracer.visibility.error_bounds import BOX, CORNER_ERROR, LANES, LONGEST, ROW, SureHitLength
@@ -23,10 +24,17 @@ from tracer.visibility.occluders import BOXES, ROUNDED, Occluders, blocks_of, en
 if TYPE_CHECKING:
     from tracer.geometry.world import World
 
+HIGHEST = 2.0  # times RAY_OFFSET and the scene's largest coordinate: rays that end higher above a surface are traced
 GROWTH = 4  # times that what moves may grow before all is certified anew
 NEVER_HIT = np.zeros(LIGHT_ROW, np.float32)  # in light space: a triangle without any area misses for certain
 NEVER_HIT[OF_U] = -1.0
 QUADRIC = 4e-6  # of the coordinates: how far from a quadric a ray that is transformed to it may hit it
+
+
+def max_height(largest: float) -> float:
+    """How high above surfaces rays may end for something to be known of them, by the largest coordinate; both in units
+    of the scene."""
+    return float(np.float32(HIGHEST * RAY_OFFSET * largest))
 
 
 def put_rows(

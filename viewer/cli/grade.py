@@ -60,7 +60,12 @@ def parser() -> Parser:
 
 
 def _method(text: str) -> str | Path:
-    return Path(text) if text.endswith(".py") else arguments.method(text)
+    if text.endswith(".py"):
+        return Path(text)
+    try:
+        return arguments.method(text)
+    except ValueError as error:
+        raise ValueError(f"{error}; or a file of Python, whose name ends in .py") from error
 
 
 def run(given: Namespace) -> int:

@@ -27,8 +27,8 @@ COLUMNS: tuple[Column[Row], ...] = (
 def verdict(card: Card) -> str:
     """Say in a sentence whether the method is right, and whether that is what it claims."""
     if card.right:
-        claims = "as it claims" if card.claims_exact else "though it does not claim to be"
-        return f"Exact, {claims}: all of {several(sum(row.due for row in card.rows), 'shadow answer')} are right."
+        claims = "as it claims to be exact" if card.claims_exact else "though it does not claim to be exact"
+        return f"Nothing wrong was found, {claims}: all of {several(sum(row.due for row in card.rows), 'shadow answer')} are right."
     said = "Wrong, though it claims to be exact" if card.claims_exact else "Not exact, as it says"
     unit = "wrong pixel" if Method.parse(card.method).clusters else "wrong answer"
     wrong, differing = sum(row.counted.wrong for row in card.rows), sum(row.differing for row in card.rows)

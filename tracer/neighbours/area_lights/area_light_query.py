@@ -12,8 +12,22 @@ import numpy as np
 from tracer.culling.counters import TESTS
 from tracer.geometry.wide_tree.topology import WIDTH
 from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import i32_at, i32x16, i64_at, lanes_below, load_f32x16, load_i32, load_three, lowest_bit, ones, store
-from tracer.visibility.area_light_tests import MOST_SAMPLES, ask_points, ask_samples, ask_triangles
+from tracer.simd import (
+    i32_at,
+    i32x16,
+    i64_at,
+    lanes_below,
+    load_f32x16,
+    load_i32,
+    load_i32x16,
+    load_three,
+    lowest_bit,
+    mask16,
+    ones,
+    select,
+    store,
+)
+from tracer.visibility.area_light_tests import KEPT, MOST_SAMPLES, ask_points, ask_samples, ask_triangles
 from tracer.visibility.beams import make_beam, passes_by, primitives_met, put_cone
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.prepared_triangles import PREPARED, prepare_in_tree, prepared_met
@@ -21,34 +35,44 @@ from tracer.visibility.prepared_triangles import PREPARED, prepare_in_tree, prep
 # Primitives that may come between, at most: a group of vectors', or else each of these goes through the tree by itself;
 # a vector's, or else each of its points does; and a point's, or else its rays are traced.
 OF_GROUP, OF_VECTOR, OF_POINT = 96, 256, 240
+MOST_UNSURE = 16  # primitives, unsure of points of a vector, or vectors of primitives, unsure of one point, at a time
 GROUPS = MOST_SAMPLES // LANES
-NUMBERS, ALL_PREPARED = 4 * (max(OF_VECTOR, OF_POINT) + LANES + WIDTH), PREPARED * (OF_GROUP // LANES)  # bytes
+ALL_FOUND = max(OF_VECTOR, OF_POINT)
+NUMBERS, ALL_PREPARED = 4 * (ALL_FOUND + LANES + WIDTH), PREPARED * (ALL_FOUND // LANES)  # bytes
 MARKS = 4 * LANES * GROUPS  # bytes: a bit for each sample of each point of a vector
-ASKED, STATE = 4 * LANES, 24  # bytes
-# Nanoseconds, about: a beam and its way to the first leaf; sixteen primitives found and prepared; one asked about a
-# vector of points, or sixteen about one; and about one point, and sixteen of its samples.
-FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 50, 8, 6
+ENTRY = 24  # bytes
+ALL_KEPT, UNSURE = KEPT * MOST_UNSURE, ENTRY * MOST_UNSURE  # bytes
+STATE, EACH_POINT = 24, 4 * LANES  # bytes
+# Nanoseconds, about, without vectors of 512 bits: a beam and its way to the first leaf; sixteen primitives found and
+# prepared; one asked about a vector of points, or sixteen about one; and about one point, and sixteen of its samples.
+FOR_BEAM, FOR_SIXTEEN, FOR_POINTS, FOR_POINT, FOR_SAMPLES = 250, 400, 100, 8, 13
 # Of a lamp's state: nanoseconds since the last account; which prepared triangle hid a point of the group last, -1 for
 # none; and whether those that hid a point with a beam of its own are kept.
 EFFORT, LATEST, HIDING = range(3)
+# Of an entry: where the prepared triangle is, the points about which it is unsure, and those from which it can hide.
+TRIANGLE, POINTS, CAN = range(3)
+ALLOWED = 6  # a part of what a point's rays cost: what asking many triangles may take before it has saved anything
 HIDDEN, SEEN, PARTLY = range(3)  # what a point sees of a lamp
 
 
 class Scratch(NamedTuple):
     """Addresses of memory that the kernel which asks has: of samples, of primitives' numbers and these prepared, of
-    what is kept of one and a vector's points, and of bits of samples, 16 points one after the other, that are blocked
-    and of which nothing is certain; of int32 for each point, how many primitives were asked about its samples; of a
-    lamp's state, int64; and of those prepared primitives of which one hid a point with a beam of its own last."""
+    what is kept of those that remain unsure, and of entries about these; of bits of samples, 16 points one after the
+    other, that are blocked and of which nothing is certain; of a lamp's state, int64; and of those prepared primitives
+    of which one hid a point with a beam of its own last; and of int32 for each point of a vector, how many triangles
+    are unsure of it, and how many of these were asked about its samples."""
 
     samples: int
     numbers: int
     prepared: int
     kept: int
+    entries: int
     blocked: int
     unsure: int
-    asked: int
     state: int
     hiding: int
+    often: int
+    asked: int
 
 
 @inlined
@@ -79,66 +103,101 @@ def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, scratch
     """Ask the primitives that come into a beam about the points of a vector: so many as were found, and perhaps
     `prepared`.  The rays of each point cost so many nanoseconds."""
     end, every, state = load_three(points.lifted, v), np.int64(answers.open[v]), i64_at(scratch.state)
-    # Points that may see some sample, those that have bits of samples, and those that are asked about no more.
-    live, begun, left = every, np.int64(0), np.int64(0)
+    # Points that may see some sample; those of which a primitive is unsure; and those that are asked about no more.
+    live, begun, left, entries = every, np.int64(0), np.int64(0), np.int64(0)
+    store(scratch.often, i32x16(0))
+    store(scratch.asked, i32x16(0))
+    # What hid the neighbours may hide these, and is asked first.
     before = state[LATEST] if prepared else np.int64(-1)
-    if before >= 0:  # what hid the neighbours may hide these
-        triangle = _prepared_at(scratch, before)
-        live, begun, left = _ask(triangle, end, lamp, live, begun, left, cost, scratch, counts)
-    for batch in range(batches_of(found)):
-        if live & ~left == 0:
-            break
-        made = scratch.prepared + PREPARED * batch * prepared
-        if not prepared:
-            prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
-        met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
-        while met != 0 and live & ~left != 0:
-            lane = lowest_bit(met)
-            met &= met - 1
-            if LANES * batch + lane == before:
-                continue
-            many = ones(live)
-            live, begun, left = _ask(made + 4 * lane, end, lamp, live, begun, left, cost, scratch, counts)
-            if ones(live) < many:
-                state[LATEST] = LANES * batch + lane
+    batch = before // LANES if before >= 0 else np.int64(-1)
+    met, first = (np.int64(1) << (before % LANES), True) if before >= 0 else (np.int64(0), False)
+    while live & ~left != 0:
+        if met == 0:
+            batch, first = np.int64(0) if first else batch + 1, False
+            if batch >= batches_of(found):
+                break
+            made = scratch.prepared + PREPARED * batch
+            if not prepared:
+                prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
+            met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
+            if before >= 0 and before // LANES == batch:
+                met &= ~(np.int64(1) << (before % LANES))
+            continue
+        lane = lowest_bit(met)
+        met &= met - 1
+        entry, kept = i64_at(scratch.entries + ENTRY * entries), scratch.kept + KEPT * entries
+        entry[TRIANGLE] = scratch.prepared + PREPARED * batch + 4 * lane
+        counts[TESTS] += ones(live)
+        state[EFFORT] += FOR_POINTS
+        hidden, missed, can = ask_points(entry[TRIANGLE], end, lamp.light, lamp.radius, kept)
+        if live & hidden != 0:
+            live &= ~hidden
+            state[LATEST] = LANES * batch + lane
+        entry[POINTS], entry[CAN] = live & ~(missed | left), can
+        if entry[POINTS] != 0:
+            begun |= entry[POINTS]
+            often = load_i32x16(scratch.often)
+            store(scratch.often, select(mask16(entry[POINTS]), often + np.int32(1), often))
+            entries += 1
+        if entries == MOST_UNSURE:
+            live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
+            entries = np.int64(0)
+    live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
     answers.full[v] = every & ~live
     answers.lit[v] = live & ~begun
     answers.partly[v] = live & begun
     _write_bits(answers, v, live & begun, lamp.groups, scratch)
 
 
-@inlined
-def _prepared_at(scratch, k):
-    """Where the numbers of the k-th prepared primitive are."""
-    return scratch.prepared + PREPARED * (k // LANES) + 4 * (k % LANES)
-
-
 @subkernel
-def _ask(triangle, end, lamp, live, begun, left, cost, scratch, counts):
-    """Ask a prepared triangle about sixteen points, `end`, and perhaps their samples: which of them are live, begun and
-    left (`ask_vector`) from now on."""
-    asked, state, open_ = i32_at(scratch.asked), i64_at(scratch.state), live & ~left
-    counts[TESTS] += ones(open_)
-    state[EFFORT] += FOR_POINTS
-    hidden, missed, can = ask_points(triangle, end, lamp.light, lamp.radius, scratch.kept)
-    live &= ~hidden
-    unsure = open_ & ~(hidden | missed)
-    while unsure != 0:
-        lane = lowest_bit(unsure)
+def _ask_entries(live, left, entries, lamp, cost, scratch):
+    """Ask so many triangles, which are unsure of points of a vector, about these points' samples: which of them are
+    live and left (`ask_vector`) from now on."""
+    often, asked, some = i32_at(scratch.often), i32_at(scratch.asked), np.int64(0)
+    for k in range(entries):
+        some |= i64_at(scratch.entries + ENTRY * k)[POINTS]
+    some &= live & ~left
+    while some != 0:
+        lane = lowest_bit(some)
         bit = np.int64(1) << lane
-        unsure &= unsure - 1
-        if begun & bit == 0:
-            begun |= bit
-            asked[lane] = 0
-            _put_bits(scratch.blocked, lane, lamp.groups, 0)
-            _put_bits(scratch.unsure, lane, lamp.groups, 0)
-        asked[lane] += 1
-        if asked[lane] > worth_asking(lamp, cost):
-            left |= bit
-            _put_bits(scratch.unsure, lane, lamp.groups, -1)  # but for those that are known to be hidden
-        elif _ask_samples(triangle, lane, can & bit != 0, lamp, lane, scratch):
-            live &= ~bit
-    return live, begun, left
+        some &= some - 1
+        if asked[lane] == 0:
+            _begin_samples(lane, lamp, scratch)
+        for k in range(entries):
+            entry = i64_at(scratch.entries + ENTRY * k)
+            if entry[POINTS] & bit == 0:
+                continue
+            asked[lane] += 1
+            if _ask_samples(entry[TRIANGLE], scratch.kept + KEPT * k, lane, entry[CAN] & bit != 0, lamp, lane, scratch):
+                live &= ~bit
+                break
+            if _in_vain(asked[lane], often[lane], lane, lamp, cost, scratch):
+                left |= bit
+                break
+    return live, left
+
+
+@inlined
+def _begin_samples(lane, lamp, scratch):
+    """Nothing is known yet of the samples of the point in a lane: none is hidden, and none is in doubt."""
+    _put_bits(scratch.blocked, lane, lamp.groups, 0)
+    _put_bits(scratch.unsure, lane, lamp.groups, 0)
+
+
+@inlined
+def _in_vain(asked, often, lane, lamp, cost, scratch):
+    """Whether asking so many triangles about a point's samples, of those that are unsure of it, has taken more than it
+    is worth: more than tracing all its rays, or where there are too many, more than was saved and a part of that.  Of
+    all samples that are not known to be hidden nothing is certain then."""
+    hidden, each = 0, FOR_POINT + FOR_SAMPLES * lamp.groups
+    if each * often <= cost + cost // 2:  # the rays of some points, traced alone, take longer than those of all
+        return False
+    for group in range(lamp.groups):
+        hidden += ones(np.int64(load_i32(scratch.blocked + 4 * (GROUPS * lane + group))))
+    if each * asked <= cost // ALLOWED + hidden * cost // (LANES * lamp.groups):
+        return False
+    _put_bits(scratch.unsure, lane, lamp.groups, -1)
+    return True
 
 
 @subkernel
@@ -165,7 +224,7 @@ def ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts):
         found = find_primitives(o, lamp.number, beam, OF_POINT, scratch, counts)
         if found < 0:
             continue
-        if passes_by(beam, lamps.moving):
+        if passes_by(beam, lamps.unknown):
             answers.alone[v] |= bit
         sees = _ask_point(o, lamp, end, lane, found, cost, scratch, counts)
         if sees == HIDDEN:
@@ -182,39 +241,38 @@ def ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts):
 def _ask_point(o, lamp, end, lane, found, cost, scratch, counts):
     """Ask the primitives that were found about one point, whose rays cost so many nanoseconds: HIDDEN, SEEN, or PARTLY
     with bits in its lane."""
-    state, asked = i64_at(scratch.state), 0
+    state, unsure = i64_at(scratch.state), 0
     for batch in range(batches_of(found)):
-        made = scratch.prepared
+        made, kept = scratch.prepared + PREPARED * batch, scratch.kept + KEPT * batch
         prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
         counts[TESTS] += ones(lanes_below(found, batch))
         state[EFFORT] += FOR_POINTS
-        hidden, missed, can = ask_triangles(made, end, lamp.light, lamp.radius, scratch.kept)
+        hidden, missed, can = ask_triangles(made, end, lamp.light, lamp.radius, kept)
         if hidden != 0:
             for at in range(0, PREPARED, 64):
                 store(scratch.hiding + at, load_f32x16(made + at))
             state[HIDING] = 1
             return HIDDEN
-        unsure = lanes_below(found, batch) & ~missed
-        while unsure != 0:
-            k = lowest_bit(unsure)
-            unsure &= unsure - 1
-            if asked == 0:
-                _put_bits(scratch.blocked, lane, lamp.groups, 0)
-                _put_bits(scratch.unsure, lane, lamp.groups, 0)
-            asked += 1
-            if asked > worth_asking(lamp, cost):
-                _put_bits(scratch.unsure, lane, lamp.groups, -1)  # but for those that are known to be hidden
-                return PARTLY
-            if _ask_samples(made + 4 * k, k, (can >> k) & 1 != 0, lamp, lane, scratch):
+        entry = i64_at(scratch.entries + ENTRY * batch)
+        entry[TRIANGLE], entry[POINTS], entry[CAN] = made, lanes_below(found, batch) & ~missed, can
+        unsure += ones(entry[POINTS])
+    if unsure == 0:
+        return SEEN
+    asked = 0
+    _begin_samples(lane, lamp, scratch)
+    for batch in range(batches_of(found)):
+        entry = i64_at(scratch.entries + ENTRY * batch)
+        some = entry[POINTS]
+        while some != 0:
+            k = lowest_bit(some)
+            some &= some - 1
+            triangle, kept = entry[TRIANGLE] + 4 * k, scratch.kept + KEPT * batch
+            if _ask_samples(triangle, kept, k, (entry[CAN] >> k) & 1 != 0, lamp, lane, scratch):
                 return HIDDEN
-    return PARTLY if asked > 0 else SEEN
-
-
-@inlined
-def worth_asking(lamp, cost):
-    """How many triangles may be asked about a point's samples before its rays, of which each costs so many nanoseconds,
-    take less: those of which nothing is certain by then are traced."""
-    return cost // (FOR_POINT + FOR_SAMPLES * lamp.groups)
+            asked += 1
+            if _in_vain(asked, unsure, lane, lamp, cost, scratch):
+                return PARTLY
+    return PARTLY
 
 
 @inlined
@@ -225,13 +283,12 @@ def _put_bits(bits, lane, groups, value):
 
 
 @inlined
-def _ask_samples(triangle, kept_lane, can, lamp, lane, scratch):
-    """Ask a triangle about the samples of the point in a lane, of which `scratch.kept` has a lane; whether all are
-    hidden."""
+def _ask_samples(triangle, kept, kept_lane, can, lamp, lane, scratch):
+    """Ask a triangle about the samples of the point in a lane, of which `kept` has a lane; whether all are hidden."""
     i64_at(scratch.state)[EFFORT] += FOR_POINT + FOR_SAMPLES * lamp.groups
     at = 4 * GROUPS * lane
     return ask_samples(
-        triangle, scratch.kept, kept_lane, can, scratch.samples, lamp.groups, scratch.blocked + at, scratch.unsure + at
+        triangle, kept, kept_lane, can, scratch.samples, lamp.groups, scratch.blocked + at, scratch.unsure + at
     )
 
 

@@ -14,8 +14,9 @@ import numpy as np
 
 from tracer.culling.stages import vectors
 from tracer.neighbours.area_lights.area_light_query import (
+    ALL_KEPT,
     ALL_PREPARED,
-    ASKED,
+    EACH_POINT,
     EFFORT,
     FOR_BEAM,
     FOR_POINTS,
@@ -25,6 +26,7 @@ from tracer.neighbours.area_lights.area_light_query import (
     OF_GROUP,
     OF_VECTOR,
     STATE,
+    UNSURE,
     Scratch,
     ask_each,
     ask_vector,
@@ -33,9 +35,10 @@ from tracer.neighbours.area_lights.area_light_query import (
     start_lamp,
 )
 from tracer.neighbours.area_lights.lamp_answers import decided
+from tracer.neighbours.area_lights.ray_cost import cost_of_rays
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import bits_of, i64_at, lanes_below, load_three, local_memory, ones
-from tracer.visibility.area_light_tests import KEPT, SAMPLES, put_samples
+from tracer.visibility.area_light_tests import SAMPLES, put_samples
 from tracer.visibility.beams import make_beam, passes_by, put_beam
 from tracer.visibility.error_bounds import LANES
 from tracer.visibility.prepared_triangles import PREPARED, Lamp, prepare_in_tree
@@ -43,35 +46,45 @@ from tracer.visibility.prepared_triangles import PREPARED, Lamp, prepare_in_tree
 GROUP = 8  # vectors of points with one way through the tree
 # Of a vector's rays: what beams may take before they have saved anything, at most what counts of what they have saved,
 # and what a group that is passed over counts as saved.
-ADVANCE, SAVINGS, PARDON = 2, 8, 1
+ADVANCE, SAVINGS, PARDON = 4, 16, 1
 
 
 @subkernel
-def find_answers(certified, points, answers, samples, first, number, count, counts):
-    """Find what is known of `count` points and lamp `number`, whose samples are those of (any, 3) from the first on."""
-    lamps, o, beam = certified.lamps, certified.occluders, make_beam()
+def find_answers(certified, points, answers, batch, samples, first, number, count, counts):
+    """Find what is known of `count` points and lamp `number`, whose samples are those of (any, 3) from the first on.
+
+    A few rays are traced, which have their place in batch, a `ShadowBatch`."""
+    lamps, o, beam = certified.lamps, certified.lamps.occluders, make_beam()
     place, radius = lamps.places[number], lamps.radii[number]
     light, many = (place[0], place[1], place[2]), np.int64(lamps.samples[number])
     scratch = Scratch(
         samples=local_memory(SAMPLES),
         numbers=local_memory(NUMBERS),
         prepared=local_memory(ALL_PREPARED),
-        kept=local_memory(KEPT),
+        kept=local_memory(ALL_KEPT),
+        entries=local_memory(UNSURE),
         blocked=local_memory(MARKS),
         unsure=local_memory(MARKS),
-        asked=local_memory(ASKED),
         state=local_memory(STATE),
         hiding=local_memory(PREPARED),
+        often=local_memory(EACH_POINT),
+        asked=local_memory(EACH_POINT),
     )
     start_lamp(scratch)
     groups = put_samples(samples, first, many, light, scratch.samples)
     lamp = Lamp(number, light, radius, groups)
-    state, cost = i64_at(scratch.state), many * lamps.ray_cost  # of a point's rays
+    for v in range(vectors(count)):
+        answers.open[v] = _open_points(points, light, radius, v) & lanes_below(count, v)
+    ray_cost = cost_of_rays(lamps, points, answers.open, batch, samples[first], many, count, counts)
+    state, cost = i64_at(scratch.state), many * ray_cost  # of a point's rays
     most = min(OF_VECTOR, LANES * cost // FOR_POINTS)
     balance = ADVANCE * LANES * cost
     for start in range(0, vectors(count), GROUP):
         end = min(start + GROUP, vectors(count))
-        some = _open_points(points, answers, light, radius, start, end, count)
+        some = 0
+        for v in range(start, end):
+            answers.full[v] = answers.lit[v] = answers.partly[v] = answers.alone[v] = 0
+            some += answers.open[v] != 0
         if some == 0:
             continue
         if balance < 0:  # beams do not pay here
@@ -83,7 +96,7 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
             for batch in range(batches_of(found)):
                 prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, scratch.prepared + PREPARED * batch)
         state[LATEST] = -1
-        away = found >= 0 and passes_by(beam, lamps.moving)
+        away = found >= 0 and passes_by(beam, lamps.unknown)
         for v in range(start, end):
             if answers.open[v] == 0 or balance < 0:
                 continue
@@ -93,7 +106,7 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
                 state[EFFORT] += FOR_BEAM
                 known = found if found >= 0 else find_primitives(o, number, beam, most, scratch, counts)
                 if known >= 0:
-                    if away or passes_by(beam, lamps.moving):
+                    if away or passes_by(beam, lamps.unknown):
                         answers.alone[v] = answers.open[v]
                     ask_vector(o, points, answers, v, lamp, beam, known, found > 0, cost, scratch, counts)
                 else:
@@ -102,21 +115,16 @@ def find_answers(certified, points, answers, samples, first, number, count, coun
                 ask_each(o, points, answers, v, lamp, lamps, cost, scratch, counts)
             # A packet with half its rays left takes more than half the time: the more are known, the more each saves.
             answered, due = decided(answers, v, many), many * ones(np.int64(answers.open[v]))
-            saved = lamps.ray_cost * answered * answered // due
+            saved = ray_cost * answered * answered // due
             balance = min(balance + saved - state[EFFORT], SAVINGS * LANES * cost)
             state[EFFORT] = 0
 
 
 @inlined
-def _open_points(points, answers, light, radius, start, end, count):
-    """Find the points of vectors that may be due to some sample of a lamp; how many vectors have any."""
-    some = 0
-    for v in range(start, end):
-        answers.open[v] = answers.full[v] = answers.lit[v] = answers.partly[v] = answers.alone[v] = 0
-        px, py, pz = load_three(points.position, v)
-        gx, gy, gz = load_three(points.geometric, v)
-        x, y, z = light[0] - px, light[1] - py, light[2] - pz
-        slack = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
-        answers.open[v] = bits_of(gx * x + gy * y + gz * z > -slack) & lanes_below(count, v)
-        some += answers.open[v] != 0
-    return some
+def _open_points(points, light, radius, v):
+    """Bits of the points of a vector from which a ray may be due to some sample of a lamp."""
+    px, py, pz = load_three(points.position, v)
+    gx, gy, gz = load_three(points.geometric, v)
+    x, y, z = light[0] - px, light[1] - py, light[2] - pz
+    slack = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
+    return bits_of(gx * x + gy * y + gz * z > -slack)

@@ -33,7 +33,7 @@ class LampAnswers(NamedTuple):
         open: bits of the points of which some ray may be due and nothing is known, sixteen points a number.
         full, lit: bits of those from which the lamp is hidden as a whole, and not at all.
         partly: bits of those with a bit for each sample.
-        alone: bits of those between which and the lamp nothing comes that moves.
+        alone: bits of those between which and the lamp no object comes of which nothing is known.
         blocked, unblocked: WORDS rows of these bits: samples that are hidden, and that are not.
     """
 

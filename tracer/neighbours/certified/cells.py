@@ -28,7 +28,6 @@ OVERFLOW, NOBODY = 0, 1  # the lists of TOO_MANY and of none
 CORNER, ALONG_U, ALONG_V, NORMAL, BEYOND_U, BEYOND_V, ROOTS = 0, 3, 6, 9, 12, 13, 14
 RECEIVER = 16
 ARRAYS = 7  # of `Cells`, the first ones: those with a row for each cell
-HIGHEST = 2.0  # times RAY_OFFSET and the scene's largest coordinate: rays that end higher above a surface are traced
 
 
 class Cells(NamedTuple):

@@ -20,7 +20,7 @@ from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.primitives import Outlines
-from tracer.geometry.rays import RAY_OFFSET
+from tracer.neighbours.area_lights.lamp_geometry import LampGeometry
 from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.certified.cell_prism import SceneScale
 from tracer.neighbours.certified.cells import (
@@ -28,7 +28,6 @@ from tracer.neighbours.certified.cells import (
     ALONG_V,
     CORNER,
     FULL,
-    HIGHEST,
     NOBODY,
     NORMAL,
     ROOTS,
@@ -53,7 +52,7 @@ from tracer.neighbours.certified.view import CertificateView, LampsView
 from tracer.runtime.parallel import for_each_chunk
 from tracer.scene.lights import Lamps
 from tracer.visibility.occluders import FAR, Occluders
-from tracer.visibility.static_geometry import StaticGeometry
+from tracer.visibility.static_geometry import StaticGeometry, max_height
 
 if TYPE_CHECKING:
     from tracer.geometry.world import World
@@ -61,7 +60,7 @@ if TYPE_CHECKING:
 BATCH = 4096  # tasks of one call of `certify`, at most
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 FEW_TILES = 4  # of a picture: with so many every vector of points makes requests, with twice as many every other
-NOTHING_MOVES = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)  # instead of a box around what does
+NOWHERE = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)  # a box that holds nothing
 NOT_RECORDED = np.empty(0, np.int32)  # where nobody wants to know which cells primary hits see
 
 
@@ -94,6 +93,7 @@ class CertificateStore:
     def _start(self) -> None:
         """Begin with nothing known."""
         self._static = StaticGeometry(self._world, self.count, self.threads, self.cost_model.max_asked > 0)
+        self._lamp_geometry: LampGeometry | None = None
         self._resting = nothing_rests(len(self._world.primitives.triangle_starts) - 1)
         self.lights = np.full((self.count, 3), np.nan, np.float32)
         self.radii = np.zeros(self.count, np.float32)
@@ -112,7 +112,7 @@ class CertificateStore:
     def _rescale(self) -> None:
         """Let cells be as coarse as the coordinates of all that is static ask for."""
         largest = 1.5 * self._static.largest  # with room for what will come to rest
-        self.scale = SceneScale(float(np.float32(HIGHEST * RAY_OFFSET * largest)), largest)
+        self.scale = SceneScale(max_height(largest), largest)
         self._put_receivers(0)
 
     def _put_receivers(self, index: int, cells: bool = True) -> None:
@@ -178,7 +178,11 @@ class CertificateStore:
         self._samples[:] = np.diff(lamps.first)[: self.count]
         self.stationary[:] = ~moved | new
         self._fitted &= ~moved
-        fit = ~self._fitted & (self.stationary | self._are_lamps)
+        if self._are_lamps.any():
+            if self._lamp_geometry is None:
+                self._lamp_geometry = LampGeometry(self._world, self.count, self.threads)
+            self._lamp_geometry.update(self._are_lamps, lights, radii, moved, resting)
+        fit = ~self._fitted & self.stationary & ~self._are_lamps
         self._static.update_lights(np.flatnonzero(fit).tolist(), lights, radii, self.scale.max_height)
         self._fitted |= fit
 
@@ -327,15 +331,18 @@ class CertificateStore:
         )
 
     def _lamps(self) -> LampsView:
-        room, placed = self.scale.max_height * OUTWARDS, self._world.placed
+        geometry = self._lamp_geometry
         return LampsView(
-            known=self._fitted & self._are_lamps,
+            known=self._are_lamps,
             places=self.lights,
             radii=self.radii,
             samples=self._samples,
-            within=(self._static.bounds.reshape(-1) + room).astype(np.float32),
-            moving=placed.moving_box if placed.has_dynamic else NOTHING_MOVES,
+            within=NOWHERE if geometry is None else geometry.within,
+            unknown=NOWHERE if geometry is None else geometry.unknown,
             ray_cost=self.cost_model.ray_cost,
+            occluders=self.occluders if geometry is None else geometry.occluders,
+            any_hit=self._world.placed.any_hit,
+            data=self._world.placed.data,
         )
 
     def at_pixels(self, cell: NDArray[np.int32]) -> NDArray[np.unsignedinteger]:

@@ -18,8 +18,11 @@ class LampsView(NamedTuple):
         places, radii: (lights, 3) and (lights,) float32, the ball in which a lamp's samples lie.
         samples: (lights,) int32, how many.
         within: (6,) float32, a box outside of which nothing is known of where rays end.
-        moving: (6,) float32, a box around all that moves; its lower corner is far above the upper one if nothing does.
-        ray_cost: nanoseconds that tracing a ray takes, about.
+        unknown: (6,) float32, a box around objects of which nothing can be proved; its lower corner is far above the
+            upper one if there are none.
+        ray_cost: nanoseconds that tracing a ray takes, about; 0 where a few are traced to find out.
+        occluders: everything else, moving or not.
+        any_hit, data: the query of the structure (`tracer.geometry.queries`).
     """
 
     known: Bytes
@@ -27,8 +30,11 @@ class LampsView(NamedTuple):
     radii: F32
     samples: I32
     within: F32
-    moving: F32
+    unknown: F32
     ray_cost: int
+    occluders: Occluders
+    any_hit: int
+    data: int
 
 
 class CertificateView(NamedTuple):
