@@ -28,7 +28,8 @@ def verdict(card: Card) -> str:
     """Say in a sentence whether the method is right, and whether that is what it claims."""
     if card.right:
         claims = "as it claims to be exact" if card.claims_exact else "though it does not claim to be exact"
-        return f"Nothing wrong was found, {claims}: all of {several(sum(row.due for row in card.rows), 'shadow answer')} are right."
+        answers = several(sum(row.due for row in card.rows), "shadow answer")
+        return f"Nothing wrong was found, {claims}: all of {answers} are right."
     said = "Wrong, though it claims to be exact" if card.claims_exact else "Not exact, as it says"
     unit = "wrong pixel" if Method.parse(card.method).clusters else "wrong answer"
     wrong, differing = sum(row.counted.wrong for row in card.rows), sum(row.differing for row in card.rows)

@@ -38,9 +38,7 @@ class Regret(CountView):
         rays, due = regret_of(frame), primary_due(frame)
         traced = int(np.count_nonzero(frame.fates & FATE == Fate.TRACED))
         return (
-            fact(
-                "in all", f"{count(rays or 0)} ({percent(rays or 0, traced)} of those of primary hits that were traced)"
-            ),
+            fact("in all", f"{count(rays or 0)} ({percent(rays or 0, traced)} of the traced ones of primary hits)"),
             fact("of what free saves", percent(rays or 0, due), _CEILING),
             fact("untraced by now", percent(due - traced, due), _CEILING),
         )
