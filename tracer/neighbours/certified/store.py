@@ -20,7 +20,6 @@ from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
 from tracer.geometry.primitives import Outlines
-from tracer.neighbours.area_lights.lamp_geometry import LampGeometry
 from tracer.neighbours.cells_of_space import STATES
 from tracer.neighbours.certified.cell_prism import SceneScale
 from tracer.neighbours.certified.cells import (
@@ -45,6 +44,7 @@ from tracer.neighbours.certified.cost_model import CostModel
 from tracer.neighbours.certified.gather_requests import RequestPoints, gather_tasks
 from tracer.neighbours.certified.invalidate import all_marked, copy_kept, invalidate_certificates
 from tracer.neighbours.certified.journal import Journal
+from tracer.neighbours.certified.lamp_geometry import LampGeometry
 from tracer.neighbours.certified.quadtree import part_of
 from tracer.neighbours.certified.requests import Requests
 from tracer.neighbours.certified.tasks import KEPT, commit, make_tasks, run_tasks, tasks_in
