@@ -107,46 +107,50 @@ def ask_vector(o, points, answers, v, lamp, beam, found, prepared, cost, scratch
     live, begun, left, entries = every, np.int64(0), np.int64(0), np.int64(0)
     store(scratch.often, i32x16(0))
     store(scratch.asked, i32x16(0))
-    # What hid the neighbours may hide these, and is asked first.
     before = state[LATEST] if prepared else np.int64(-1)
-    batch = before // LANES if before >= 0 else np.int64(-1)
-    met, first = (np.int64(1) << (before % LANES), True) if before >= 0 else (np.int64(0), False)
-    while live & ~left != 0:
-        if met == 0:
-            batch, first = np.int64(0) if first else batch + 1, False
-            if batch >= batches_of(found):
-                break
-            made = scratch.prepared + PREPARED * batch
-            if not prepared:
-                prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
-            met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
-            if before >= 0 and before // LANES == batch:
-                met &= ~(np.int64(1) << (before % LANES))
-            continue
-        lane = lowest_bit(met)
-        met &= met - 1
-        entry, kept = i64_at(scratch.entries + ENTRY * entries), scratch.kept + KEPT * entries
-        entry[TRIANGLE] = scratch.prepared + PREPARED * batch + 4 * lane
-        counts[TESTS] += ones(live)
-        state[EFFORT] += FOR_POINTS
-        hidden, missed, can = ask_points(entry[TRIANGLE], end, lamp.light, lamp.radius, kept)
-        if live & hidden != 0:
-            live &= ~hidden
-            state[LATEST] = LANES * batch + lane
-        entry[POINTS], entry[CAN] = live & ~(missed | left), can
-        if entry[POINTS] != 0:
-            begun |= entry[POINTS]
-            often = load_i32x16(scratch.often)
-            store(scratch.often, select(mask16(entry[POINTS]), often + np.int32(1), often))
-            entries += 1
-        if entries == MOST_UNSURE:
-            live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
-            entries = np.int64(0)
+    if before >= 0:  # what hid the neighbours may hide these
+        live, begun, left, entries = _ask(before, end, lamp, live, begun, left, entries, cost, scratch, counts)
+    for batch in range(batches_of(found)):
+        if live & ~left == 0:
+            break
+        made = scratch.prepared + PREPARED * batch
+        if not prepared:
+            prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, made)
+        met = np.int64(prepared_met(made, beam)) & lanes_below(found, batch)
+        while met != 0 and live & ~left != 0:
+            k = LANES * batch + lowest_bit(met)
+            met &= met - 1
+            if k != before:
+                live, begun, left, entries = _ask(k, end, lamp, live, begun, left, entries, cost, scratch, counts)
     live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
     answers.full[v] = every & ~live
     answers.lit[v] = live & ~begun
     answers.partly[v] = live & begun
     _write_bits(answers, v, live & begun, lamp.groups, scratch)
+
+
+@subkernel
+def _ask(k, end, lamp, live, begun, left, entries, cost, scratch, counts):
+    """Ask the k-th prepared triangle about sixteen points, `end`, and where there are no more entries, those about
+    samples: which points are live, begun and left (`ask_vector`), and how many entries there are, from now on."""
+    state, entry, kept = i64_at(scratch.state), i64_at(scratch.entries + ENTRY * entries), scratch.kept + KEPT * entries
+    entry[TRIANGLE] = scratch.prepared + PREPARED * (k // LANES) + 4 * (k % LANES)
+    counts[TESTS] += ones(live)
+    state[EFFORT] += FOR_POINTS
+    hidden, missed, can = ask_points(entry[TRIANGLE], end, lamp.light, lamp.radius, kept)
+    if live & hidden != 0:
+        live &= ~hidden
+        state[LATEST] = k
+    entry[POINTS], entry[CAN] = live & ~(missed | left), can
+    if entry[POINTS] != 0:
+        begun |= entry[POINTS]
+        often = load_i32x16(scratch.often)
+        store(scratch.often, select(mask16(entry[POINTS]), often + np.int32(1), often))
+        entries += 1
+    if entries == MOST_UNSURE:
+        live, left = _ask_entries(live, left, entries, lamp, cost, scratch)
+        entries = np.int64(0)
+    return live, begun, left, entries
 
 
 @subkernel
