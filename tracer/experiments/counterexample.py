@@ -138,7 +138,7 @@ def _history(example: Counterexample) -> list[str]:
         return [f"The camera came there after {'that frame' if few == 1 else f'{few} frames'} of the path."]
     if few < every:
         return [f"The modes that {few} of {every} earlier frames left are enough to show it."]
-    return [f"It shows with the modes that {few} earlier frame{'s' * (few != 1)} left."]
+    return [f"It is wrong with the modes that {few} earlier frame{'s' * (few != 1)} left."]
 
 
 def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:

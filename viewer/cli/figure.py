@@ -31,7 +31,7 @@ maps of work. The counters are those of the kd-tree, ray by ray, unless --accele
 goes into certificates is among them. The figure carries how it was made: `shadowcull check` draws it again.
 
 A .html is one page, to be opened in a browser: a reader clicks pixels for their modes, what blocks their lights, their
-rays and each method's answer, chooses views and methods, none among them, and wipes between two. `check` takes it not.
+rays and each method's answer, chooses views and methods, none among them, and wipes between two. `check` does not take it.
 """
 
 

@@ -51,11 +51,11 @@ def in_words(card: Card) -> list[str]:
         said.append(f"Certificates of {PROVES} {share}, and refute {f'{refuted:,}' if refuted else 'none'}.")
     if card.other_counters:
         measured = " (it goes by measured times)" if Method.parse(card.method).adaptive else ""
-        said.append(f"With {card.threads} threads, counters are others{measured}: {', '.join(card.other_counters)}.")
+        said.append(f"With {card.threads} threads, these counters differ{measured}: {', '.join(card.other_counters)}.")
     elif not card.other_pictures:
         said.append(f"Pictures and counters are the same with {card.threads} threads as with one.")
     if worst := card.worst:
-        enough = f"Of {worst.first}, {worst.left} are enough to show one as wrong: " if worst.left else ""
+        enough = f"It was shrunk from {worst.first} to {worst.left}: " if worst.left else ""
         said.append(f"The worst wrong pixel: {worst.where}. {enough}{worst.words}")
     return said if card.whole else [*said, "The card is not whole: it was cancelled."]
 
