@@ -30,8 +30,8 @@ smoothing, its difference to the picture of none, and the counters. Differences 
 maps of work. The counters are those of the kd-tree, ray by ray, unless --accelerator says otherwise; the work that
 goes into certificates is among them. The figure carries how it was made: `shadowcull check` draws it again.
 
-A .html is one page, to be opened in a browser: a reader clicks pixels for their modes, what blocks their lights, their
-rays and each method's answer, chooses views and methods, none among them, and wipes between two. `check` does not take it.
+A .html is one page for a browser: a reader clicks pixels for their modes, what blocks their lights, their rays and each
+method's answer, chooses views and methods, none among them, and wipes between two. `check` does not take it.
 """
 
 
