@@ -146,8 +146,8 @@ BUILT_IN = (
             },
         },
         "The paper's method, tested one way, with zoom factor 4, 10 bounces, one ray a pixel and point lights; every "
-        "frame of the animation is traced in full at 512 x 512. (The window always traces through its fast trees; the "
-        "command bench takes the paper's kd-tree.)",
+        "frame of the animation is traced in full at 512 x 512. (The tree stays the one that is chosen; the command "
+        "bench takes the paper's kd-tree.)",
     ),
     BuiltIn(
         "Quick and exact",

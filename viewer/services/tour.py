@@ -281,8 +281,8 @@ STEPS = (
     ),
     Step(
         "What their shadow rays have met",
-        f"Press {{{View.SHADOW.label}}}: full shadow skips the ray to this light, non-shadow asks dynamic objects "
-        f"alone (§2.4). {{Next light}} shows another light, {{{View.COLOR.label}}} the picture.",
+        f"Press {{{View.SHADOW.label}}}: in full shadow, rays to this light are skipped, in non-shadow, tested "
+        f"against dynamic objects only (§2.4). {{Next light}} shows another light, {{{View.COLOR.label}}} the picture.",
         tuple(Part(_shows(view), _show(view)) for view in (View.SHADOW, View.COLOR)),
     ),
     Step(
@@ -294,7 +294,7 @@ STEPS = (
     Step(
         "Shadows that move",
         f"Press {{{View.MOVING_SHADOW.label}}}, then {{Play}}: the shadows of moving objects fall on primitives in "
-        "non-shadow mode, and are right, as these ask dynamic objects.",
+        "non-shadow mode, and are right, as their rays are tested against dynamic objects.",
         (
             Part(lambda c: c.session.scene is not None and len(c.session.scene.objects) > 1,
                  open_scene(default_scene()), True),
@@ -304,8 +304,8 @@ STEPS = (
     ),
     Step(
         "Where the method fails",
-        "The paper's Figure 4. From afar no shadow ray of this triangle met the small ball, so its mode is "
-        f"non-shadow. Now its shadow is missing. Press {{{View.DIFFERENCE.label}}}: the marked pixels are wrong.",
+        "The paper's Figure 4. From afar no shadow ray of this triangle hit the small ball, so its mode is non-shadow. "
+        f"Now the ball's shadow is missing. Press {{{View.DIFFERENCE.label}}}: the marked pixels are wrong.",
         (
             opened(FIGURE_4),
             Part(_is_staged, _stage, True),

@@ -25,8 +25,8 @@ PASSED_OVER = "passed over"
 BUILT = "built"
 
 BY_BEAMS = (
-    "The tests of shadow rays include those of beams: triangles that are asked about all samples of a lamp at once, "
-    "instead of tracing a ray to each."
+    "The tests of shadow rays include those of beams: triangles that are tested against all rays to a lamp at once, "
+    "instead of tracing each ray."
 )
 """What is said of the tests where certificates cull rays of lamps."""
 

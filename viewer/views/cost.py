@@ -20,8 +20,8 @@ class Cost(Work):
     name = "rays traced"
     title_of_shares = "Share of the rays without culling that is traced"
     in_all = (
-        "of the first sample of each pixel, through the whole scene: shadow rays that asked dynamic objects or a few "
-        "candidates alone are not among them; the share is of the rays traced without culling"
+        "of the first sample of each pixel, through the whole scene: shadow rays that were tested against dynamic "
+        "objects or a few candidates only do not count; the share is of the rays traced without culling"
     )
 
     def whole(self, frame: Frame) -> NDArray[np.int32]:

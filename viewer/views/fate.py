@@ -27,8 +27,8 @@ class Fates(ClassView):
     key = "Shift+X"
     also = "why traced culled dynamic reason"
     help = (
-        "What became of the shadow ray from each pixel's first hit to the chosen light: culled, asked dynamic objects "
-        "only, or traced, and why it was not culled."
+        "What became of the shadow ray from each pixel's first hit to the chosen light: culled, tested against dynamic "
+        "objects only, or traced, and why it was not culled."
     )
     records = Record.FATES
     of_light = True

@@ -41,8 +41,8 @@ class MovingShadows(ClassView):
     key = "Shift+O"
     also = "dynamic only NON_SHADOW darkened objects"
     help = (
-        "Where a moving object darkens what nothing static has ever hidden from the chosen light (NON_SHADOW): its "
-        "rays ask dynamic objects only, so that no stale shadow stays behind."
+        "Where a moving object darkens what nothing static has ever hidden from the chosen light (NON_SHADOW): such "
+        "rays are tested against dynamic objects only, so that no stale shadow stays behind."
     )
     records = Record.FATES
     of_light = True
@@ -52,8 +52,8 @@ class MovingShadows(ClassView):
         Class("neither", (1.0, 1.0, 1.0), "no moving object has to do with it"),
         Class(
             "dynamic only, darkened", hex_color("4A2FB5"),
-            "its ray asked dynamic objects only, and one of them is in the way: the shadow mode NON_SHADOW stays, and "
-            "the shadow goes with the object",
+            "its ray was tested against dynamic objects only, and one of them is in the way: the shadow mode "
+            "NON_SHADOW stays, and the shadow goes with the object",
         ),
         Class(
             "darkened, but not dynamic only", hex_color("8E97F5"),
@@ -61,7 +61,7 @@ class MovingShadows(ClassView):
         ),
         Class(
             "dynamic only, lit", hex_color("F8F2A0"),
-            "its ray asked dynamic objects only, and none of them is in the way",
+            "its ray was tested against dynamic objects only, and none of them is in the way",
         ),
         Class("moving object", OCCLUSION[OcclusionMode.DYNAMIC].color, "it moves itself: dynamic, never culled"),
     )  # fmt: skip

@@ -16,7 +16,7 @@ from viewer.views.paint import by_number
 class PixelCount(DrawnView):
     label = "Pixel count"
     key = "7"
-    help = "Pixels a primitive covers now, against those of its last examination."
+    help = "Pixels that a primitive covers now, compared with its last examination."
     of_modes = is_flat = True
 
     def colorize(self, frame: Frame, draw: DrawOptions) -> Pixels:
