@@ -150,8 +150,8 @@ def _add(tree: Tree, row: RayRow) -> None:
 
 
 def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> list[str]:
-    """Return a line for each step, below what it runs for: its number in `tracer/reference.py`, its text and its values;
-    then the modes that are left.  `light` leaves out shadow rays to others."""
+    """Return a line for each step, below what it runs for: its number in the module, its text and its values; then the
+    modes that are left.  `light` leaves out shadow rays to others."""
     lines, of = [found.remark] if found.remark else [], ("", "")
     for step in found.steps:
         if light is not None and step.part.light not in (-1, light):
