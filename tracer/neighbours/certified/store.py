@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracer.culling.dependence import drop_dependent
-from tracer.culling.modes import MAX_CULLED_LIGHTS, words_at
+from tracer.culling.modes import MAX_CULLED_LIGHTS, shadow_mode, words_at
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
@@ -180,7 +180,7 @@ class CertificateStore:
         self._fitted &= ~moved
         if self._are_lamps.any():
             if self._lamp_geometry is None:
-                self._lamp_geometry = LampGeometry(self._world, self.count, self.threads)
+                self._lamp_geometry = LampGeometry(self._world, self.count, self.threads, self._static)
             self._lamp_geometry.update(self._are_lamps, lights, radii, moved, resting)
         fit = ~self._fitted & self.stationary & ~self._are_lamps
         self._static.update_lights(np.flatnonzero(fit).tolist(), lights, radii, self.scale.max_height)
@@ -354,7 +354,7 @@ class CertificateStore:
 
         One of STATES, and the numbers of the primitives that it names."""
         number = self.place_of(primitive, point)[3]
-        state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < self.count else 0
+        state = int(shadow_mode(self.cells.words[number], light)) if light < self.count else 0
         names = named_by(self.cells, self.naming(number, light) if state == FULL else number, light)
         return STATES[state], tuple(int(name) for name in (() if names is None else names))
 
