@@ -148,8 +148,8 @@ class CertifiedCells(WithStore):
             return
 
         def request(numbers: NDArray[np.int64], requests: Requests) -> None:
-            view = store.view(len(tiles), requests)  # the block holds addresses of arrays that only this keeps
-            block = pack(view)
+            view = store.view(len(tiles), requests, NOWHERE)
+            block = pack(view)  # which holds addresses of arrays that only the view keeps
             request_in_tiles(block.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
 
         budget = Budget(frame.settings.certificates, seconds)

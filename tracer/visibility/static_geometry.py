@@ -77,8 +77,7 @@ class StaticGeometry:
     def __init__(
         self, world: World, lights: int, threads: int, asks: bool, known: StaticGeometry | None = None
     ) -> None:
-        """With light-space triangles where somebody `asks` them.  What never moves is taken from what is `known` of the
-        same world."""
+        """`asks`: somebody asks light-space triangles; `known` has what never moves of the same world."""
         self._world, self._lights, self._threads = world, lights, threads
         self._primitives = world.primitives
         self.first_quadric = len(world.primitives.triangles)

@@ -21,6 +21,7 @@ from tracer.neighbours.area_lights.area_light_query import (
     EFFORT,
     FOR_BEAM,
     FOR_POINTS,
+    HIDING,
     LATEST,
     MARKS,
     NUMBERS,
@@ -33,7 +34,6 @@ from tracer.neighbours.area_lights.area_light_query import (
     ask_vector,
     batches_of,
     find_primitives,
-    start_lamp,
 )
 from tracer.neighbours.area_lights.lamp_answers import decided
 from tracer.neighbours.area_lights.ray_cost import cost_of_rays
@@ -70,13 +70,13 @@ def find_answers(lamps, points, answers, batch, samples, first, number, count, c
         often=local_memory(EACH_POINT),
         asked=local_memory(EACH_POINT),
     )
-    start_lamp(scratch)
-    groups = put_samples(samples, first, many, light, scratch.samples)
-    lamp = Lamp(number, light, radius, groups)
+    lamp = Lamp(number, light, radius, put_samples(samples, first, many, light, scratch.samples))
+    state = i64_at(scratch.state)
+    state[EFFORT], state[LATEST], state[HIDING] = 0, -1, 0
     for v in range(vectors(count)):
         answers.open[v] = may_face(points, light, radius, v) & lanes_below(count, v)
     ray_cost = cost_of_rays(lamps, points, answers.open, batch, samples[first], many, count, counts)
-    state, cost = i64_at(scratch.state), many * ray_cost  # of a point's rays
+    cost = many * ray_cost  # of a point's rays
     most = min(OF_VECTOR, LANES * cost // FOR_POINTS)
     balance = ADVANCE * LANES * cost
     for start in range(0, vectors(count), GROUP):

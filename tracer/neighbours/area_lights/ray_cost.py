@@ -14,7 +14,7 @@ from tracer.culling.counters import STEPS, TESTS
 from tracer.culling.shadow_testing import begin_at, pack_ways, shadow_rays
 from tracer.culling.stages import vectors
 from tracer.geometry.queries import EVERYTHING, any_hits
-from tracer.runtime.kernels import inlined, subkernel
+from tracer.runtime.kernels import subkernel
 
 PACKET = 8  # vectors of points whose rays are traced together
 SHARE = 512  # of all samples' rays, one in so many is traced, but no less than a packet
@@ -47,10 +47,5 @@ def cost_of_rays(lamps, points, facing, batch, sample, samples, count, counts):
     any_hits(lamps, shadow_rays(batch), EVERYTHING, batch.blocked, 0, n, traced)
     counts[STEPS] += traced[0]
     counts[TESTS] += traced[1]
-    return _nanoseconds((traced[0] + traced[1]) / n)
-
-
-@inlined
-def _nanoseconds(each):
-    """Of a ray whose steps and tests are so many."""
+    each = (traced[0] + traced[1]) / n
     return np.int64(FOR_RAY + min(FOR_FEW * each, FOR_MANY * math.sqrt(each)))

@@ -34,13 +34,9 @@ class LampGeometry:
         self._fitted = np.zeros(self._lights, np.bool_)  # lights that boxes are fitted to
 
     def update(
-        self,
-        lamps: NDArray[np.bool_],
-        lights: NDArray[np.float32],
-        radii: NDArray[np.float32],
-        moved: NDArray[np.bool_],
-        resting: Resting,
-    ) -> None:
+        self, lamps: NDArray[np.bool_], lights: NDArray[np.float32], radii: NDArray[np.float32],
+        moved: NDArray[np.bool_], resting: Resting,
+    ) -> None:  # fmt: skip
         """Put everything where it is now, and fit boxes to `lamps` (n,), balls of radii (n,) around lights (n, 3), some
         of which have `moved` (n,) since the last frame."""
         if self._world.extent > self._geometry.allowed:  # boxes may have grown beyond those that are known
