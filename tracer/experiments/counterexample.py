@@ -144,7 +144,7 @@ def _history(example: Counterexample) -> list[str]:
 
 def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
     """Return the counterexample as JSON has it. The commands' `--before` takes the file."""
-    blocker = None if example.blocker < 0 else primitive_in_words(scene, example.blocker)
+    blocked = example.blocker >= 0
     return {
         "place": example.place,
         "frame": frame_number(scene, example.time),
@@ -161,8 +161,8 @@ def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
         "light_name": scene.lights[example.light].name,
         "answer": "lit" if example.lit else "blocked",
         "verdict": example.verdict,
-        "blocker": None if example.blocker < 0 else example.blocker,
-        "blocker_name": blocker,
+        "blocker": example.blocker if blocked else None,
+        "blocker_name": primitive_in_words(scene, example.blocker) if blocked else None,
         "bounces": example.bounces,
         "more_lights": example.more_lights,
         "wrong_pixels": example.pixels,

@@ -167,12 +167,12 @@ def why_lines(found: Why, scene: Scene, light: int | None = None) -> list[str]:
     shared: dict[str, list[int]] = {}
     for one in found.reasons:
         if light is None or one.light == light:
-            text = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
-            shared.setdefault(text, []).append(one.light)
-    for text, lights in shared.items():
+            sentence = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
+            shared.setdefault(sentence, []).append(one.light)
+    for sentence, lights in shared.items():
         named = ", ".join(named_light(scene.lights, number) for number in lights[:MOST_LIGHTS])
         more = f" and {len(lights) - MOST_LIGHTS} more" if len(lights) > MOST_LIGHTS else ""
-        lines.append(f"{named}{more}: {text}")
+        lines.append(f"{named}{more}: {sentence}")
     if found.coverage is not None:
         lines.append(plain(words.coverage(found.coverage)))
     lines += [plain(words.reference(one)) for one in found.references]
