@@ -167,12 +167,12 @@ class Grade(Run[Card]):
                 self._keep_worst(trial, len(counted.frames) - 1, none, frame)
         for timed, none, frame in self._traced(trial, self._timed, cancel):  # noqa: B007
             differing += _differing(none, frame)
-            alone.append(frame)
+            alone.append((frame.time, frame.color, frame.statistics.to_dict()))
         renderer = Renderer(trial.scene, replace(self._timed, threads=card.threads), world=self._world(trial, BVH8))
-        for one in alone:
-            other = renderer.render(one.time, cancel=cancel)
-            card.other_pictures += _differing(one, other) > 0
-            counts, again = one.statistics.to_dict(), other.statistics.to_dict()
+        for time, color, counts in alone:
+            other = renderer.render(time, cancel=cancel)
+            card.other_pictures += bool((other.color != color).any())
+            again = other.statistics.to_dict()
             unlike = {name for name in counts if name not in _CHANCE and counts[name] != again[name]}
             card.other_counters = sorted(unlike.union(card.other_counters))
             self.progressed(f"{trial}: by {card.threads} threads")
