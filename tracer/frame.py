@@ -239,10 +239,8 @@ def _png_of(color: NDArray[np.float32]) -> bytes:
     return file.getvalue()
 
 
-def _html_of(color: NDArray[np.float32], title: str, statistics: FrameStatistics) -> str:
-    """The picture, (h, w, 3), beside its counters."""
-    height, width = color.shape[:2]
-    image = base64.b64encode(_png_of(color)).decode()
+def counters(statistics: FrameStatistics) -> list[tuple[str, str]]:
+    """Names and values of a frame's counters, as people read them."""
     rays, wrong = statistics.shadow, statistics.wrong
     due = max(rays.due, 1)
     lines = [
@@ -257,8 +255,16 @@ def _html_of(color: NDArray[np.float32], title: str, statistics: FrameStatistics
     ]
     if wrong is not None:
         lines.insert(5, ("wrong answers", f"{wrong.answers:,}"))
+    return lines
+
+
+def _html_of(color: NDArray[np.float32], title: str, statistics: FrameStatistics) -> str:
+    """The picture, (h, w, 3), beside its counters."""
+    height, width = color.shape[:2]
+    image = base64.b64encode(_png_of(color)).decode()
     rows = "".join(
-        f"<tr><td>{escape(name)}</td><td style='text-align:right'>{value}</td></tr>" for name, value in lines
+        f"<tr><td>{escape(name)}</td><td style='text-align:right'>{value}</td></tr>"
+        for name, value in counters(statistics)
     )
     return (
         "<div style='display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start'>"

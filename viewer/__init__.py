@@ -1,4 +1,5 @@
-"""The viewer: everything a person touches, over the `tracer`; `show` opens its window from scripts and notebooks.
+"""The viewer: everything a person touches, over the `tracer`; `show` opens its window from scripts and notebooks, and
+`explore` makes a page of a frame.
 
     cli | window     the command line; the window, which alone knows GL and widgets
     services         threads, files, runs, and the controller that wires them
@@ -17,9 +18,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tracer.frame import Frame
     from tracer.scene.model import Scene
+    from viewer.output.explorable import Page
 
 
-__all__ = ["show"]
+__all__ = ["explore", "load_ipython_extension", "show"]
 
 
 def show(
@@ -64,6 +66,39 @@ def show(
     opened.ui.tour.end()
     opened.run()
     return opened.controller.frame
+
+
+def explore(frame: Frame, scene: Scene | None = None) -> Page:
+    """Return a page in which a reader clicks pixels of a frame for all that the frame has recorded of them.
+
+    A notebook shows the page; `explore(frame).html` is the text of an HTML file that fetches nothing.
+
+    Parameters
+    ----------
+    frame : Frame
+        What has been rendered. `record_fates`, `record_work` and `verify` in its settings bring views of their own.
+    scene : Scene, optional
+        Its scene, from which lights and primitives have their names.
+
+    Raises
+    ------
+    ValueError
+        If the picture is too large for a page.
+    """
+    from viewer.output.explorable import page_of_frame
+
+    return page_of_frame(frame, scene)
+
+
+def load_ipython_extension(ipython: Any) -> None:
+    """Let every frame show itself by its page: `%load_ext viewer` in a notebook."""
+    from tracer.frame import Frame
+    from viewer.output.explorable import MOST_PIXELS, page_of_frame
+
+    def shown(frame: Frame) -> str:
+        return (page_of_frame(frame) if frame.primitive.size <= MOST_PIXELS else frame)._repr_html_()
+
+    ipython.display_formatter.formatters["text/html"].for_type(Frame, shown)
 
 
 def window_module() -> Any:

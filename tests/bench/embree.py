@@ -223,7 +223,8 @@ class EmbreeRays:
 
     def _buffer(self, packets: int) -> NDArray[np.float32]:
         """Packets (packets, rows, width) with nothing hit and no ray yet."""
-        made = _aligned((packets, self._rows, self._mode.width))
+        # One packet more: without AVX-512, Embree 4.4 reads a hit behind packets of 16 rays that have none.
+        made = _aligned((packets + 1, self._rows, self._mode.width))[:packets]
         made.view(np.uint32)[:, MASK] = NOTHING
         if self._rows > RAY_ROWS:
             made.view(np.uint32)[:, PRIMITIVE:] = NOTHING

@@ -125,7 +125,7 @@ def _failed_rule(scene: Scene, find: Counterexample, unit: int, renderer: Render
     verdict = next(one for one in Verdict if one.value == find.verdict)
     method = title_of(frame.settings.method)
     if verdict not in (Verdict.FULL_SHADOW, Verdict.NON_SHADOW) or find.taught < 0:
-        return f"No rule of the paper failed, but what {method} knew: {MEANING[verdict]}"
+        return f"This is no rule of the paper, but {method}'s own answer. {MEANING[verdict]}"
     what = f"{kind_of(scene, find.primitive)} {find.primitive}"
     what = f"the cell of {what}" if frame.cells is not None else what
     light, mode, before = named_light(scene.lights, find.light), find.verdict, find.before

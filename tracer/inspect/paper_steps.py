@@ -99,6 +99,11 @@ class PaperSteps:
     modes: dict[int, tuple[int, list[int]]]
 
     @property
+    def changes(self) -> bool:
+        """Whether any step changes a mode."""
+        return any(step.changes for step in self.steps)
+
+    @property
     def remark(self) -> str:
         """What is to be known of these steps where the frame has not taken them."""
         own = Method.parse(self.method).kind.name == "paper"
@@ -120,9 +125,9 @@ def paper_steps(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Can
     """
     work, title = renderer.work_on(frame), title_of(frame.settings.method)
     if not frame.settings.keeps_modes:
-        raise ValueError(f"{title} keeps no modes of the paper")
+        raise ValueError(f"{title} keeps no modes of the paper; the method paper does")
     if len(work.first):
-        raise ValueError(f"{title} keeps modes of cells, and the text speaks of primitives")
+        raise ValueError(f"{title} keeps modes of cells, and the text speaks of primitives, as the method paper does")
     for lamp in np.flatnonzero(np.diff(work.shading.lamps.first) > 1).tolist():
         raise ValueError(
             f"the text knows points of light, and {named_light(renderer.scene.lights, lamp)} has several samples"
@@ -228,7 +233,10 @@ class _Run:
 
     def _join_others(self, section: str, function: Any) -> None:
         """Note at the head of a function that what other pixels have found counts from here on."""
-        line, note = function.py_func.__code__.co_firstlineno + 1, "From here on with what other pixels have found."
+        line, note = (
+            function.py_func.__code__.co_firstlineno + 1,
+            "What other pixels have found is included from here on.",
+        )
         self._steps.append(Step(Part(section), line, primitives=tuple(self._concerned), note=note))
 
     def _test_shadows(self) -> None:

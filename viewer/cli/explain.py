@@ -14,11 +14,11 @@ from rich.tree import Tree
 
 from tracer.experiments.hunt import History
 from tracer.experiments.warmup_frames import WarmupFrame
-from tracer.inspect.paper_steps import PaperSteps, paper_steps, text
+from tracer.inspect.paper_steps import PaperSteps, in_words, paper_steps, text
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
 from tracer.inspect.why import why
-from tracer.inspect.why_in_words import Words, plain
+from tracer.inspect.why_in_words import Words, plain, primitive_in_words
 from tracer.method import Method
 from tracer.renderer import Renderer
 from tracer.scene.lights import named_light
@@ -84,7 +84,7 @@ def run(given: Namespace) -> int:
     title = f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {width} × {height}, method {settings.method}"
     if given.steps:
         for number, steps in enumerate(stepped, 1):
-            print(printable(f"{title}, frame {number} of {len(stepped)}"))
+            print(printable(f"{title}, frame {number} of {len(stepped)}, by tracer/reference.py"))
             print(*map(printable, steps_lines(steps, scene, light)), sep="\n")
         return 0
     tree = found.tree
@@ -145,8 +145,8 @@ def _add(tree: Tree, row: RayRow) -> None:
 
 
 def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> list[str]:
-    """Return a line for each step, below what it runs for: its number, its text and its values; `light` leaves out
-    shadow rays to others."""
+    """Return a line for each step, below what it runs for: its number in the module, its text and its values; then the
+    modes that are left.  `light` leaves out shadow rays to others."""
     lines, of = [found.remark] if found.remark else [], ("", "")
     for step in found.steps:
         if light is not None and step.part.light not in (-1, light):
@@ -155,6 +155,11 @@ def steps_lines(found: PaperSteps, scene: Scene, light: int | None = None) -> li
             lines.append(of[0])
         values = " ".join(filter(None, (step.note, ", ".join(map(str, step.values)))))
         lines.append(f"{step.line:5} {text()[step.line]:72}  {values}".rstrip())
+    lines.append("Modes that this leaves:" if found.modes else "Nothing is seen here, so that no mode is set.")
+    for primitive, (occlusion, shadow) in found.modes.items():
+        told = [f"{named_light(scene.lights, k)} {in_words('shadow', mode)}" for k, mode in enumerate(shadow)]
+        told = told if light is None else told[light : light + 1]
+        lines.append(f"  {primitive_in_words(scene, primitive)}: {'; '.join([in_words('mode', occlusion), *told])}")
     return lines
 
 

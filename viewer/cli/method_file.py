@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 import traceback
@@ -59,8 +60,11 @@ def said_of(error: BaseException, path: Path) -> str:
     """An error of a method in one line, with the line of its file that it comes from, as far as that is known."""
     told = "".join(traceback.format_exception(error))
     lines = re.findall(rf'{re.escape(path.name)}", line (\d+)', told)
-    said = one_line(error)
+    said = f"SyntaxError: {error.msg}" if isinstance(error, SyntaxError) else one_line(error)
     if isinstance(error, NumbaError):  # which begins with the step that failed
         reasons = [line for line in str(error).splitlines() if line.strip() and not line.startswith("Failed in")]
         said = f"a kernel does not compile: {' '.join(reasons[:1])}"
+        if unknown := re.search(r"NameError: .*'(\w+)'", said):  # of which numba does not say where it stands
+            names = (one for one in ast.walk(ast.parse(path.read_bytes())) if isinstance(one, ast.Name))
+            lines = lines or [one.lineno for one in names if one.id == unknown[1]]
     return f"{path}: {f'line {lines[-1]}: ' if lines else ''}{said}"

@@ -1,7 +1,8 @@
 """A figure that can be explored: one HTML file, with a picture in which a reader clicks pixels.
 
 The page (`explorable.html`) draws views from what frames say of each pixel: modes, fates of shadow rays, rays, wrong
-answers, and what blocks a light.  All is in the file, deflated; nothing is fetched.
+answers, and what blocks a light.  All is in the file, deflated; nothing is fetched.  A notebook shows a frame by the
+same page, with what that frame has recorded.
 """
 
 from __future__ import annotations
@@ -11,20 +12,22 @@ import json
 import shlex
 import zlib
 from collections.abc import Iterable, Sequence
+from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
-from tracer.frame import Frame
+from tracer.frame import Frame, counters
 from tracer.geometry.camera import pinhole
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.method import Method
-from tracer.scene.lights import named_light
+from tracer.scene.lights import light_in_words, named_light
+from tracer.scene.model import Scene
 from viewer.output import commands
 from viewer.output.comparison import Crop, Shown
 from viewer.state.palette import FATES, OCCLUSION, SHADOW, Class, color_map
@@ -36,6 +39,7 @@ from viewer.util.numbers import several
 ENDING = ".html"
 RECORDS = tuple(Record)  # of a frame: all that views show
 MOST_PIXELS, MOST_LIGHTS = 640 * 480, 8
+HEIGHT = 760  # pixels of a notebook that a page takes
 _BETWEEN = 1e-4  # of the way from a light: nearer to either end lies the lamp itself, or the surface that is asked
 
 
@@ -49,40 +53,79 @@ def check(width: int, height: int, crops: Sequence[Crop] = ()) -> None:
 
 def save(shown: Shown, world: World, path: Path) -> None:
     """Write the page; raises OSError in one line.  The frames have recorded all of RECORDS."""
+    write_text(path, _page(page_data(shown, world)))
+
+
+class Page(NamedTuple):
+    """A page as a notebook shows it, in a frame of its own; `html` is the file."""
+
+    html: str
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="{HEIGHT}" style="border:0"></iframe>'
+
+
+def page_of_frame(frame: Frame, scene: Scene | None = None) -> Page:
+    """Return the page of one frame alone; lights and primitives have names if its scene is given.  Raises ValueError
+    where the picture is too large."""
+    check(frame.width, frame.height)
+    name = frame.settings.method
+    data = _about(frame, scene, [], f"{frame.time:.3f} s, {frame.width} × {frame.height}, {Method.parse(name).title}")
+    data["methods"] = [_method(name, frame, counters(frame.statistics))]
+    return Page(_page(data))
+
+
+def _page(data: dict[str, Any]) -> str:
     text = Path(__file__).with_suffix(ENDING).read_text(encoding="utf-8")
-    data = json.dumps(page_data(shown, world), separators=(",", ":")).replace("<", "\\u003c")
-    write_text(path, text.replace("/*DATA*/null", data, 1))
+    return text.replace("/*DATA*/null", json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"), 1)
 
 
 def page_data(shown: Shown, world: World) -> dict[str, Any]:
     """Return what the page is given, as JSON has it."""
     scene, state, frame = shown.scene, shown.state, shown.reference
-    lights = min(frame.lights, MOST_LIGHTS)
     positions = scene.light_positions(frame.time)
-    in_the_way = [blockers(frame, world, positions, light) for light in range(lights)]
+    in_the_way = [blockers(frame, world, positions, light) for light in range(min(frame.lights, MOST_LIGHTS))]
     number = Session(scene).frame_at(state.time)
     before = f", with what {several(shown.warmed, 'earlier frame')} taught" if shown.warmed else ""
-    words = ["shadowcull", "figure", commands.scene_word(scene.path), "-o", "figure.html"]
-    left_out = frame.lights - lights
+    words = ["shadowcull", "figure", _scene_word(scene.path), "-o", "figure.html"]
+    data = _about(frame, scene, in_the_way, f"{scene.path.name}, frame {number}{before}")
+    data["caption"] = shown.comparison.words or state.draw.caption
+    data["command"] = shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)])
+    data["view"] = state.draw.view.value
+    for name in dict.fromkeys(["none", *shown.frames]):
+        one = shown.frames.get(name, frame)
+        counts = Shown(scene, state, shown.comparison, {name: one}, frame).counts(name)
+        data["methods"].append(_method(name, one, counts))
+    return data
+
+
+def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]], title: str) -> dict[str, Any]:
+    """What the page is told of what all methods share."""
+    lights, left_out = min(frame.lights, MOST_LIGHTS), max(frame.lights - MOST_LIGHTS, 0)
+    seen = [int(k) for k in np.unique([frame.primitive, *in_the_way]) if k >= 0]
     return {
-        "title": f"{scene.path.name}, frame {number}{before}",
-        "caption": shown.comparison.words or state.draw.caption,
-        "command": shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)]),
+        "title": title,
+        "caption": "",
+        "command": "",
         "note": f"{several(left_out, 'further light')} left out" if left_out else "",
-        "view": state.draw.view.value,
+        "view": "color",
         "width": frame.width,
         "height": frame.height,
-        "lights": [named_light(scene.lights, light) for light in range(lights)],
-        "primitives": {
-            int(k): primitive_in_words(scene, int(k)) for k in np.unique([frame.primitive, *in_the_way]) if k >= 0
-        },
+        "lights": [named_light(scene.lights, k) if scene else light_in_words(k, "") for k in range(lights)],
+        "primitives": {k: primitive_in_words(scene, k) if scene else f"primitive {k}" for k in seen},
         "primitive": _deflated(frame.primitive, np.int32),
         "blockers": [_deflated(blocker, np.int32) for blocker in in_the_way],
         "classes": {"occlusion": _classes(OCCLUSION), "shadow": _classes(SHADOW), "fate": _classes(FATES)},
         "away": int(Fate.FACES_AWAY),
         "colors": _deflated(np.round(255 * color_map()), np.uint8),
-        "methods": [_method(name, shown, lights) for name in dict.fromkeys(["none", *shown.frames])],
+        "methods": [],
     }
+
+
+def _scene_word(path: Path) -> str:
+    """As commands name a scene, but from the folder of the moment where it is in there: pages are given to others."""
+    word, here = commands.scene_word(path), Path.cwd()
+    return str(Path(word).relative_to(here)) if Path(word).is_relative_to(here) else word
 
 
 def _options(shown: Shown) -> list[str]:
@@ -92,18 +135,17 @@ def _options(shown: Shown) -> list[str]:
     return [*words[:at], *words[at + 2 :]]
 
 
-def _method(name: str, shown: Shown, lights: int) -> dict[str, Any]:
+def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[str, Any]:
     """What the page is told of a method."""
-    frame = shown.frames.get(name, shown.reference)
-    of_modes = frame.settings.keeps_modes
+    lights, of_modes = range(min(frame.lights, MOST_LIGHTS)), frame.settings.keeps_modes
     return {
         "name": name,
         "title": Method.parse(name).title,
-        "counts": Shown(shown.scene, shown.state, shown.comparison, {name: frame}, shown.reference).counts(name),
+        "counts": counts,
         "picture": f"data:image/png;base64,{base64.b64encode(frame._repr_png_()).decode()}",
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
-        "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in range(lights)] if of_modes else [],
-        "fate": [_deflated(frame.fate(k), np.uint8) for k in range(lights)] if frame.fates is not None else [],
+        "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in lights] if of_modes else [],
+        "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
         "traced": _deflated(frame.cost, np.int32),
         "due": _deflated(frame.due_rays, np.int32),
         "saved": _deflated(frame.saved, np.int32),

@@ -91,6 +91,7 @@ def test_steps_print_the_text_as_it_runs_in_each_frame(run: Run) -> None:
     assert [n for n in ("2.3", "2.4", "2.5", "2.6") if f"§{n} " in first] == ["2.3", "2.4", "2.5", "2.6"]
     assert re.search(r"modes.occlusion\[\d+\]: 00 INIT → 10 FULLY_RENDERED", first)
     assert re.search(r"modes.shadow\[\d+, 0\]: 00 INIT → 10 NON_SHADOW", first) and "other pixels" in first
+    assert re.search(r"leaves:\n(  .*\n)*  .*: 10 FULLY_RENDERED; light 0 .*10 NON_SHADOW; light 1", second)
     assert "counts[DYNAMIC_ONLY]: 0 → 1" in second and "in_shadow = _blocked" not in second
     one = run.ok(*ROOM, "--method", "paper", "--pixel", "24,16", "--steps", "--light", 1, "--repeat", 0)
     assert "light 1, primary ray" in one and "light 0, primary ray" not in one and "frame 1 of 1" in one

@@ -66,7 +66,7 @@ class Mine(ShadowMethod):
         ("import numpy\n1 / 0\n", "mine.py: line 2: ZeroDivisionError: division by zero"),
         ("def f(:\n", "mine.py: line 1: SyntaxError"),
         ("x = 1\n", "mine.py: one subclass of tracer.methods.interface.ShadowMethod is needed, not none"),
-        (KERNEL.format("nothing()"), "mine.py: a kernel does not compile: NameError: name 'nothing' is not defined"),
+        (KERNEL.format("nothing()"), "mine.py: line 7: a kernel does not compile: NameError: name 'nothing'"),
         (KERNEL.replace("[Stage(choose=choose)]", "worker.x").format("pass"), "mine.py: line 11: AttributeError: "),
     ],
 )

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import viewer
 from tests.viewer.browser import CHROMIUM, Page, browser
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
 from tracer.inspect.why_in_words import primitive_in_words
+from tracer.renderer import Renderer
 from tracer.scene.load import load_scene
 from tracer.scene.model import Scene
 from viewer.__main__ import main
@@ -122,6 +126,50 @@ def test_the_example_of_the_documentation_runs_fetches_nothing_and_can_be_made_a
         again = opened.ask("document.getElementById('command').innerText")
     assert main(shlex.split(again)[1:]) == 0
     assert (tmp_path / "figure.html").read_text() == text
+
+
+def test_a_notebook_shows_a_frame_by_a_page(
+    page: tuple[Page, Path], shown: Shown, scene: Scene, tmp_path: Path
+) -> None:
+    opened, _ = page
+    frame = shown.frames["paper"]
+    inside = "document.querySelector('iframe').contentDocument"
+    for given, named in ((scene, primitive_in_words(scene, int(frame.primitive[10, 20]))), (None, "primitive")):
+        html = viewer.explore(frame, given)._repr_html_()
+        (tmp_path / "notebook.html").write_text(f"<body data-ready='yes' style='width:1200px'>{html}</body>")
+        opened.open(tmp_path / "notebook.html")
+        wait = f"new Promise((done) => {{ const look = () => {inside}?.body?.dataset.ready ? done(true) : "
+        assert opened.ask(wait + "setTimeout(look, 20); look(); })")
+        left, top, width, height = opened.ask(
+            f"(() => {{ const b = {inside}.getElementById('picture').getBoundingClientRect(),"
+            " f = document.querySelector('iframe').getBoundingClientRect();"
+            " return [b.left + f.left, b.top + f.top, b.width, b.height]; })()"
+        )
+        opened.click(left + width * 20.5 / 48, top + height * 10.5 / 36)
+        said = opened.ask(f"{inside}.getElementById('pixel').innerText")
+        assert said.startswith("Pixel 20, 10") and named in said, said
+        assert OCCLUSION[frame.occlusion_mode[10, 20]].name in said and f"{frame.due_rays[10, 20]}" in said  # type: ignore[index]
+
+
+def test_a_frame_that_recorded_nothing_has_a_page_of_what_it_has(scene: Scene, tmp_path: Path) -> None:
+    frame = Renderer(scene, Settings(width=48, height=36, method="none", threads=1)).render(scene.frame_time(0))
+    (tmp_path / "page.html").write_text(viewer.explore(frame).html)
+    with browser(tmp_path / "browser") as opened:
+        opened.open(tmp_path / "page.html", "pixel=20,10")
+        assert opened.ask(TOLD).startswith("Pixel 20, 10")
+        views = opened.ask("Array.from(document.getElementById('view').options).map((o) => o.value)")
+    assert "primitive" in views and not {"fate", "traced", "difference"} & set(views)
+
+
+def test_the_extension_of_notebooks_makes_frames_show_pages(shown: Shown) -> None:
+    known: dict[type, Callable[[Frame], str]] = {}
+    formatter = SimpleNamespace(for_type=known.__setitem__)
+    ipython = SimpleNamespace(display_formatter=SimpleNamespace(formatters={"text/html": formatter}))
+    viewer.load_ipython_extension(ipython)
+    frame = shown.frames["paper"]
+    assert known[Frame](frame) == viewer.explore(frame)._repr_html_()
+    large = replace(frame, primitive=np.zeros((700, 700), np.int32))
+    assert known[Frame](large) == large._repr_html_()
 
 
 def test_pages_that_would_be_too_large_are_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -138,7 +138,11 @@ def test_why_there_are_no_steps_is_said(desk: SteppingDesk, monkeypatch: pytest.
     desk.click()
     c.settings.change(method="cells")
     desk.until(lambda: bool(s.problem))
-    assert s.problem == "No steps: Cells keeps modes of cells, and the text speaks of primitives." and s.now is None
+    assert (
+        s.problem
+        == "No steps: Cells keeps modes of cells, and the text speaks of primitives, as the method paper does."
+    )
+    assert s.now is None
     c.settings.change(method="certified")
     desk.until(lambda: s.now is not None)
     assert not s.problem and "Paper would take" in s.now.remark

@@ -59,6 +59,10 @@ def show(ui: Ui) -> None:
         clipped(s.now.heading(s.now.steps[s.place], c.session.scene))
         if s.now.remark:
             paragraph(s.now.remark, QUIET)
+        if not s.now.changes:
+            paragraph(
+                "No line changes a mode in this frame. Backspace forgets all modes, so that they are set anew.", QUIET
+            )
         _text(ui, s.now, s.place)
 
 
