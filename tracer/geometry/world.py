@@ -121,7 +121,7 @@ class World:
             A time in seconds, or what `pose` has returned.
         resting : (objects,) bool, optional
             Objects that count as static geometry for `any_hits`; none by default.
-        together : int
+        max_packet_size : int
             Rays that may go through a tree side by side, 128, 16 or 1. The answers are the same; a structure that
             traces rays one by one takes no note of it.
         """
