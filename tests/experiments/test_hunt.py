@@ -13,6 +13,7 @@ from tests.marbles import LAST, STEP, write_marbles
 from tracer.experiments import counterexample, hunt, warmup_frames
 from tracer.experiments.counterexample import AROUND, PATH
 from tracer.experiments.hunt import Results, Search
+from tracer.inspect.projection import seen_at
 from tracer.inspect.ray_tree import ray_tree
 from viewer.output.comparison import Crop
 
@@ -83,6 +84,7 @@ def test_a_find_is_made_again_by_its_frames(world: tracer.World, alone: Results,
         frame = renderer.render(find.time, find.seen_camera)
         assert tuple(frame.color[find.y, find.x].tolist()) == find.color
         tree = ray_tree(renderer, frame, find.x, find.y)
+        assert seen_at(frame, find.x, find.y) == pytest.approx(tree.rays[0].point, abs=1e-3)
         (ray, *_) = [ray for ray in tree.rays if ray.primitive == find.primitive and ray.bounce == find.bounces]
         assert ray.shadows is not None
         place = ray.shadows.of_light(find.light).start
@@ -135,12 +137,8 @@ def test_an_exact_method_is_never_wrong(world: tracer.World) -> None:
 
 def test_a_hunt_that_is_stopped_keeps_what_it_has(world: tracer.World) -> None:
     traced: list[str] = []
-    stopped = result(
-        world,
-        search(world, around=8),
-        cancel=lambda: len(traced) >= 6,
-        on_frame=lambda label, frame: traced.append(label),
-    )
+    until_six = {"cancel": lambda: len(traced) >= 6, "on_frame": lambda label, frame: traced.append(label)}
+    stopped = result(world, search(world, around=8), **until_six)
     assert stopped.frames == 6 and stopped.finds
     assert traced[0] == f"frame 1 of {FRAMES}"
 

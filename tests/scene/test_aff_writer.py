@@ -18,15 +18,15 @@ from viewer.util.resources import embedded_scenes
 MOVING = """\
 v from 0 0 5 at 0 0 0
 a 1 4 10
-k turn { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 2 0 0 0  10 1 0 0 0 0 0  visibility 1 2 1
+k still { transl 4 -1 0 0 0 0 0 0  0 0 0 0 0 0 0  9 1 0 2 0 0 0  10 1 0 0 0 0 0  visibility 1 2 1
   rot 4 -1 1 1 0 0 0 0 0  0 1 1 0 20 0 0 0  9 0 1 0 170 0 0.5 0  10 0 1 0 180 0 0 0 }
-la turn 1 2 3 0.1 0.2 0.3
+la still 1 2 3 0.1 0.2 0.3
 lamp dome at 0 5 0 radius 2 up 1 1 0 samples 4 color 1 2 3 falloff inverse-square name dome
 fm 0.1 0.1 0.1 0.7 0.6 0.5 0.2 0.2 0.2 3 0.25 1.3
 x fixed { xs 1 -2 0.5 1 2 3 190 0.1 0.2 0.3 { s 0 1 0 -0.5 c 0 0 0 0.5 1 1 1 0.1
   pp 3 0 0 0 1 0 0  1 0 0 0 1 0  0 1 0 0 0 1 } }
-xs 1 2 3 0 0 1 180 1 0 0 { x turn { xs 2 -1 1 1 0 0 33 0 0 1 { x turn { p 3 0 0 0 1 0 0 0 1 0  s 0 0 0 1 } } } }
-x turn { tpa 2 1 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1  3 0 0 0 0 0 1 2 0 0 0 0 1 0 2 0 0 0 1 }
+xs 1 2 3 0 0 1 180 1 0 0 { x still { xs 2 -1 1 1 0 0 33 0 0 1 { x still { p 3 0 0 0 1 0 0 0 1 0  s 0 0 0 1 } } } }
+x still { tpa 2 1 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1  3 0 0 0 0 0 1 2 0 0 0 0 1 0 2 0 0 0 1 }
 """
 
 
@@ -71,7 +71,7 @@ def test_transforms_tracks_and_lamps(tmp_path: Path) -> None:
     path = tmp_path / "moving.aff"
     path.write_text(MOVING)
     scene = load_scene(path)
-    assert len(scene.objects) == 3 and scene.lights[0].track == "turn"
+    assert len(scene.objects) == 3 and scene.lights[0].track == "still"
     check_same(scene, again(scene, tmp_path))
     freed = again(edited(scene, Edits(moving=frozenset(["fixed"]))).scene, tmp_path)
     assert len(freed.objects) == 4, "what could move stays no part of what never moves"

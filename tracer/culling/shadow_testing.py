@@ -35,6 +35,7 @@ from tracer.simd import (
     load_spread_bytes16,
     load_three,
     mask16,
+    maximum,
     ones,
     pack_three,
     store,
@@ -109,6 +110,16 @@ def faces(points, light, v):
     px, py, pz = load_three(points.position, v)
     gx, gy, gz = load_three(points.geometric, v)
     return bits_of(gx * (light[0] - px) + gy * (light[1] - py) + gz * (light[2] - pz) > ZERO)
+
+
+@inlined
+def may_face(points, light, radius, v):
+    """Bits of the points whose surface may face some place of a ball around the light: of no others a ray is due."""
+    px, py, pz = load_three(points.position, v)
+    gx, gy, gz = load_three(points.geometric, v)
+    x, y, z = light[0] - px, light[1] - py, light[2] - pz
+    far = maximum(x, -x) + maximum(y, -y) + maximum(z, -z) + (abs(light[0]) + abs(light[1]) + abs(light[2]))
+    return bits_of(gx * x + gy * y + gz * z > -(np.float32(1.001) * radius + ROUNDED * far))
 
 
 @subkernel
@@ -219,25 +230,36 @@ def shadow_rays(batch):
     return Rays(batch.origin, batch.direction, batch.t_min, batch.t_max)
 
 
-@subkernel
-def _rays_from_light(points, light, active, bits, batch):
-    """Pack the shadow rays from the light to the points that `bits` names; how many there are.
+@inlined
+def pack_ways(points, light, v, lanes, batch, n):
+    """Put the ways from the light to those points of a vector that the bits `lanes` name into the batch, behind n that
+    are there already; how many there are then."""
+    if lanes == 0:
+        return n
+    x, y, z = load_three(points.lifted, v)
+    way = pack_three((x - light[0], y - light[1], z - light[2]), mask16(lanes))
+    store_three(address_of(batch.direction) + 4 * n, 4 * batch.origin.shape[1], way)
+    return n + ones(lanes)
 
-    At t = 1 is the point."""
-    stride, n = 4 * batch.origin.shape[1], 0
-    for a in range(active):
-        v = batch.active[a]
-        live = np.int64(bits[v])
-        if live == 0:
-            continue
-        x, y, z = load_three(points.lifted, v)
-        direction = pack_three((x - light[0], y - light[1], z - light[2]), mask16(live))
-        store_three(address_of(batch.direction) + 4 * n, stride, direction)
-        n += ones(live)
+
+@inlined
+def begin_at(light, n, batch):
+    """Let the first n rays of the batch begin at the light and end where their ways do, at t = 1."""
+    stride = 4 * batch.origin.shape[1]
     for at in range(0, 4 * n, 64):
         store_three(address_of(batch.origin) + at, stride, (f32x16(light[0]), f32x16(light[1]), f32x16(light[2])))
         store(address_of(batch.t_min) + at, f32x16(LIGHT_MARGIN))
         store(address_of(batch.t_max) + at, f32x16(ONE))
+
+
+@subkernel
+def _rays_from_light(points, light, active, bits, batch):
+    """Pack the shadow rays from the light to the points that `bits` names; how many there are."""
+    n = 0
+    for a in range(active):
+        v = batch.active[a]
+        n = pack_ways(points, light, v, np.int64(bits[v]), batch, n)
+    begin_at(light, n, batch)
     return n
 
 

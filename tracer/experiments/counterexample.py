@@ -11,6 +11,7 @@ from tracer.experiments import warmup_frames
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.inspect.path_records import VERDICTS, RayTree
 from tracer.inspect.why_in_words import primitive_in_words
+from tracer.scene.arrays import vector
 from tracer.scene.lights import named_light
 from tracer.scene.model import Camera, Scene
 from tracer.util.text import mode_in_words
@@ -32,10 +33,8 @@ class Counterexample:
     `differing` the pixels whose colour is another.  `before` are the fewest frames before it that were found to make
     it, of `learnt_from` that really came before."""
 
-    place: str
     time: float
     camera: Camera
-    own_camera: bool
     x: int
     y: int
     difference: float
@@ -47,7 +46,9 @@ class Counterexample:
     verdict: str
     blocker: int
     bounces: int
-    pixels: int
+    place: str = PATH
+    own_camera: bool = False
+    pixels: int = 0
     answers: int = 0
     differing: int = 0
     more_lights: int = 0
@@ -143,7 +144,7 @@ def _history(example: Counterexample) -> list[str]:
 
 def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
     """Return the counterexample as JSON has it. The commands' `--before` takes the file."""
-    blocker = None if example.blocker < 0 else primitive_in_words(scene, example.blocker)
+    blocked = example.blocker >= 0
     return {
         "place": example.place,
         "frame": frame_number(scene, example.time),
@@ -160,8 +161,8 @@ def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
         "light_name": scene.lights[example.light].name,
         "answer": "lit" if example.lit else "blocked",
         "verdict": example.verdict,
-        "blocker": None if example.blocker < 0 else example.blocker,
-        "blocker_name": blocker,
+        "blocker": example.blocker if blocked else None,
+        "blocker_name": primitive_in_words(scene, example.blocker) if blocked else None,
         "bounces": example.bounces,
         "more_lights": example.more_lights,
         "wrong_pixels": example.pixels,
@@ -174,37 +175,34 @@ def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
 
 
 def counterexample_in(tree: RayTree, scene: Scene) -> Counterexample | None:
-    """Read off a pixel's rays what is wrong there: of its wrong answers the one that weighs most.
+    """Read off a pixel's rays, in a verified frame, what is wrong there: of its wrong answers the one that weighs most.
 
     Returns None where no answer is wrong, as where only a sum was rounded differently."""
-    worst, most = None, -1.0
-    for ray in tree.rays:
-        if ray.shadows is None:
-            continue
-        for place in np.flatnonzero(ray.shadows.wrong).tolist():
-            weight = float(ray.weight.max()) * max(scene.lights[int(ray.shadows.light[place])].color)
-            if weight > most:
-                worst, most = (ray, ray.shadows, place), weight
-    if worst is None:
+    answers = [
+        (float(ray.weight.max()) * max(scene.lights[int(found.light[place])].color), ray, found, place)
+        for ray in tree.rays
+        if (found := ray.shadows) is not None
+        for place in np.flatnonzero(found.wrong).tolist()
+    ]
+    if not answers:
         return None
-    ray, shadows, place = worst
-    lit = bool(shadows.lit[place])
+    _, ray, shadows, place = max(answers, key=lambda answer: answer[0])
+    frame, lit = tree.frame, bool(shadows.lit[place])
+    assert frame.reference is not None
+    color, right = frame.color[tree.y, tree.x], frame.reference[tree.y, tree.x]
     return Counterexample(
-        place=PATH,
-        time=tree.frame.time,
-        camera=tree.frame.camera,
-        own_camera=False,
+        time=frame.time,
+        camera=frame.camera,
         x=tree.x,
         y=tree.y,
-        difference=0.0,
-        color=(0.0, 0.0, 0.0),
-        reference=(0.0, 0.0, 0.0),
+        difference=float(np.abs(np.clip(color, 0.0, 1.0) - np.clip(right, 0.0, 1.0)).max()),
+        color=vector(color),
+        reference=vector(right),
         primitive=ray.primitive,
         light=int(shadows.light[place]),
         lit=lit,
         verdict=VERDICTS[shadows.verdict[place]].value,
         blocker=int(shadows.blocker[place]),
         bounces=ray.bounce,
-        pixels=0,
         more_lights=len(np.unique(shadows.light[shadows.wrong & (shadows.lit == lit)])) - 1,
     )

@@ -19,7 +19,7 @@ from tracer.experiments import counterexample, experiment
 from tracer.experiments.experiment import REFERENCE, Results
 from tracer.experiments.hunt import VISIBLE
 from tracer.experiments.runner import Run
-from tracer.experiments.shrink import Cancel, Shrink, Shrunk, WrongPixel, explained
+from tracer.experiments.shrink import Cancel, Shrink, WrongPixel, explained
 from tracer.experiments.trials import Trial, trials
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame, Settings
@@ -112,7 +112,8 @@ class Grade(Run[Card]):
         self._scenes = [scene for scene, _ in scenes]
         self._trials = [trial for scene, first in scenes for trial in trials(scene, first, frames)]
         self._worlds: dict[tuple[int, str], World] = {}
-        self._worst: tuple[float, Trial, int, int, int] = (VISIBLE, self._trials[0], 0, 0, 0)
+        self._off = VISIBLE  # how far the worst wrong pixel is from its right colour; where it is, in words, and what
+        self._worst: tuple[str, Scene, WrongPixel] | None = None
         super().__init__(self._scenes[0], len(self._trials) * 5 * frames + 1)
 
     def steps(self, scene: Scene, world: World | None, cancel: Cancel) -> Iterator[Card]:
@@ -123,8 +124,8 @@ class Grade(Run[Card]):
         for trial in self._trials:
             card.rows.append(self._row(trial, card, cancel))
             yield card
-        if self._worst[0] > VISIBLE:
-            self._look_into_worst(card, cancel)
+        if self._worst is not None:
+            self._look_into_worst(card, *self._worst, cancel)
         if cancel():
             raise Cancelled
         card.whole = True
@@ -162,20 +163,16 @@ class Grade(Run[Card]):
             if self._kind.exact:
                 held += _held_against(proves.render(frame.time, cancel=cancel), none, frame)
             differing += _differing(none, frame)
-            off = np.abs(np.clip(frame.color, 0.0, 1.0) - np.clip(none.color, 0.0, 1.0)).max(axis=-1)
-            off = np.nan_to_num(off, nan=1.0)
-            off[frame.wrong == 0] = 0.0
-            y, x = np.unravel_index(int(off.argmax()), off.shape)
-            if off[y, x] > self._worst[0] and not self._kind.clusters:
-                self._worst = float(off[y, x]), trial, len(counted.frames) - 1, int(x), int(y)
+            if not self._kind.clusters:
+                self._keep_worst(trial, len(counted.frames) - 1, none, frame)
         for timed, none, frame in self._traced(trial, self._timed, cancel):  # noqa: B007
             differing += _differing(none, frame)
-            alone.append(frame)
+            alone.append((frame.time, frame.color, frame.statistics.to_dict()))
         renderer = Renderer(trial.scene, replace(self._timed, threads=card.threads), world=self._world(trial, BVH8))
-        for one in alone:
-            other = renderer.render(one.time, cancel=cancel)
-            card.other_pictures += _differing(one, other) > 0
-            counts, again = one.statistics.to_dict(), other.statistics.to_dict()
+        for time, color, counts in alone:
+            other = renderer.render(time, cancel=cancel)
+            card.other_pictures += bool((other.color != color).any())
+            again = other.statistics.to_dict()
             unlike = {name for name in counts if name not in _CHANCE and counts[name] != again[name]}
             card.other_counters = sorted(unlike.union(card.other_counters))
             self.progressed(f"{trial}: by {card.threads} threads")
@@ -183,14 +180,22 @@ class Grade(Run[Card]):
         rows = experiment.table(counted)[-1], experiment.table(timed)[-1]
         return Row(trial.scene.path.stem, trial.change, len(alone), *rows, due, differing, *held.tolist())
 
-    def _look_into_worst(self, card: Card, cancel: Cancel) -> None:
+    def _keep_worst(self, trial: Trial, number: int, none: Frame, frame: Frame) -> None:
+        """Keep the worst wrong pixel of a trial's frame where it is the worst so far."""
+        shown, right = np.clip(frame.color, 0.0, 1.0), np.clip(none.color, 0.0, 1.0)
+        off = np.nan_to_num(np.abs(shown - right).max(axis=-1), nan=1.0)
+        off[frame.wrong == 0] = 0.0
+        y, x = map(int, np.unravel_index(int(off.argmax()), off.shape))
+        if off[y, x] > self._off:
+            self._off, how = float(off[y, x]), "bright" if shown[y, x].sum() > right[y, x].sum() else "dark"
+            where = f"pixel {x}, {y} in frame {number} of {trial}, too {how} by {self._off:.3f} of 1"
+            before = tuple(WarmupFrame(time) for time in trial.times[:number])
+            settings = replace(self._counted, record_lights=False)
+            self._worst = where, trial.scene, WrongPixel(x, y, trial.times[number], None, before, settings)
+
+    def _look_into_worst(self, card: Card, where: str, scene: Scene, wrong: WrongPixel, cancel: Cancel) -> None:
         """Shrink the worst wrong pixel, and say what is wrong there."""
-        difference, trial, number, x, y = self._worst
-        card.worst = worst = Worst(f"pixel {x}, {y} in frame {number} of {trial}, off by {difference:.3f} of 1")
-        before = tuple(WarmupFrame(time) for time in trial.times[:number])
-        settings = replace(self._counted, record_lights=False)
-        scene, wrong = trial.scene, WrongPixel(x, y, trial.times[number], None, before, settings)
-        left: Shrunk | None = None
+        card.worst = worst = Worst(where)
         shrinking = Shrink(scene, wrong)
 
         def show() -> None:
@@ -198,16 +203,17 @@ class Grade(Run[Card]):
             self._wake()
 
         try:
-            for left in shrinking.each(cancel=cancel, wake=show) if self._shrinks else ():  # noqa: B007
+            for _ in shrinking.each(cancel=cancel, wake=show) if self._shrinks else ():
                 pass
         except ValueError as error:  # without textures, or traced once more, it is right
             worst.words = str(error)
-        if left is not None:
+        if left := shrinking.results:
             scene, wrong = left.scene, left.wrong
             worst.first, worst.left, worst.scene = str(left.first), str(left.counts), aff_text(scene)
         if told := explained(scene, wrong):
-            worst.words = " ".join([*counterexample.in_words(told[0], scene), told[1]])
-            worst.found = counterexample.to_json(told[0], scene)
+            find, rule = told
+            worst.words = " ".join([*counterexample.in_words(find, scene)[1:], rule])  # the first says where it is
+            worst.found = counterexample.to_json(find, scene)
 
 
 def _differing(none: Frame, frame: Frame) -> int:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracer.experiments import counterexample
 from tracer.experiments.counterexample import AROUND, PATH, Counterexample, counterexample_in
@@ -23,6 +24,7 @@ from tracer.frame import Frame, Settings
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
 from tracer.inspect.mode_origins import NEVER, ModeOrigins
+from tracer.inspect.projection import seen_at
 from tracer.inspect.ray_tree import ray_tree
 from tracer.method import Method
 from tracer.renderer import Renderer
@@ -103,9 +105,7 @@ def run(
 
     `on_frame` is called with each picture, and where it is in words.  Once `cancel` returns true, the hunt ends with
     what it has.  Raises ValueError where a setting is out of range."""
-    settings = replace(search.settings, samples=1, verify=True, modes=False).validated()
-    if Method.parse(settings.method).has_certificates:
-        settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
+    settings = repeatable(replace(search.settings, verify=True))
     world = world or World(scene, search.times[0], settings.accelerator)
     settings = replace(settings, accelerator=world.accelerator)
     names = {name: getattr(settings, name) for name in SETTINGS}
@@ -125,6 +125,16 @@ def run(
     except Cancelled:
         return
     yield results
+
+
+def repeatable(settings: Settings) -> Settings:
+    """Return settings by which the same picture comes again, bit for bit, after the same frames.
+
+    Raises ValueError, in one line, where one is out of range."""
+    settings = replace(settings, samples=1, modes=False).validated()
+    if Method.parse(settings.method).has_certificates:
+        settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
+    return settings
 
 
 class Hunt(Run[Results]):
@@ -172,29 +182,34 @@ class History:
         return find if number == NEVER else replace(find, taught=number, taught_time=self.frames[number].time)
 
 
+def trace_before(renderer: Renderer, before: Sequence[WarmupFrame], cancel: Callable[[], bool]) -> History:
+    """Trace frames one after another, without verifying them, and return them as a history."""
+    history, renderer.settings = History(renderer.scene), replace(renderer.settings, verify=False)
+    for one in before:
+        history.add(renderer.render(one.time, one.camera, cancel), one)
+    return history
+
+
+def wrong_in(frame: Frame) -> tuple[NDArray[np.bool_], dict[str, Any]]:
+    """Return which pixels (h, w) of a verified frame have a wrong answer or another colour, and how many there are of
+    either, as a `Counterexample` has it."""
+    assert frame.wrong is not None and frame.reference is not None
+    differing = (frame.color != frame.reference).any(axis=-1)
+    wrong = (frame.wrong > 0) | differing
+    pixels, answers = int(np.count_nonzero(wrong)), int(frame.wrong.sum())
+    return wrong, {"pixels": pixels, "answers": answers, "differing": int(np.count_nonzero(differing))}
+
+
 def find_at(
     renderer: Renderer, frame: Frame, x: int, y: int, history: History, cancel: Callable[[], bool]
 ) -> Counterexample | None:
     """Return what is wrong at a pixel of a verified frame that comes after a history; None where no answer is."""
-    assert frame.wrong is not None and frame.reference is not None
     find = counterexample_in(ray_tree(renderer, frame, x, y, cancel), renderer.scene)
     if find is None:
         return None
     if frame.cells is None or frame.certificates is not None:  # else cells of it have the modes
         find = history.with_teacher(find, find.primitive)
-    color, right = frame.color[y, x], frame.reference[y, x]
-    differing = (frame.color != frame.reference).any(axis=-1)
-    return replace(
-        find,
-        difference=float(np.abs(np.clip(color, 0.0, 1.0) - np.clip(right, 0.0, 1.0)).max()),
-        color=vector(color),
-        reference=vector(right),
-        pixels=int(np.count_nonzero((frame.wrong > 0) | differing)),
-        answers=int(frame.wrong.sum()),
-        differing=int(np.count_nonzero(differing)),
-        before=tuple(history.frames),
-        learnt_from=len(history.frames),
-    )
+    return replace(find, before=tuple(history.frames), learnt_from=len(history.frames))
 
 
 class _Hunter:
@@ -228,13 +243,13 @@ class _Hunter:
         find = finds[int(lots.integers(len(finds)))] if finds else None
         if find is not None:
             time, camera, before = find.time, find.camera, find.before
-            target = self._target(find)
+            target = seen_at(self._primary_rays(time, find.seen_camera), find.x, find.y)
         else:
             time = float(lots.choice(np.asarray(self._search.times)))
             camera = self._search.camera or self._scene.camera_at(time)
             before, target = (WarmupFrame(time, self._search.camera),), None
         self._renderer.reset_modes()
-        history = self._trace_before(self._renderer, before)
+        history = trace_before(self._renderer, before, self._cancel)
         if target is None:
             target = self._ahead(time, camera)
         moved = self._another(camera, target, time, lots)
@@ -247,20 +262,17 @@ class _Hunter:
 
     def _judge(self, renderer: Renderer, frame: Frame, place: str, history: History, own_camera: bool) -> None:
         """Count what is wrong in a picture that comes after a history, and keep it where it is among the worst."""
-        results = self._results
-        assert frame.wrong is not None and frame.reference is not None
-        wrong = (frame.wrong > 0) | (frame.color != frame.reference).any(axis=-1)
-        pixels = int(np.count_nonzero(wrong))
+        results, (wrong, counts) = self._results, wrong_in(frame)
         results.frames += 1
         results.pixels += wrong.size
-        results.wrong_pixels += pixels
-        results.wrong_frames += pixels > 0
+        results.wrong_pixels += counts["pixels"]
+        results.wrong_frames += counts["pixels"] > 0
         for x, y in self._candidates(frame, wrong):
             find = find_at(renderer, frame, x, y, history, self._cancel)
             if find is not None:
-                self._keep(replace(find, place=place, own_camera=own_camera))
+                self._keep(replace(find, place=place, own_camera=own_camera, **counts))
 
-    def _candidates(self, frame: Frame, wrong: np.ndarray) -> list[tuple[int, int]]:
+    def _candidates(self, frame: Frame, wrong: NDArray[np.bool_]) -> list[tuple[int, int]]:
         """The worst wrong pixel of each primitive that a picture shows, the worst first, as x and y, as far as they may
         be among the worst of all."""
         rows, columns = np.nonzero(wrong)
@@ -321,27 +333,11 @@ class _Hunter:
     def _makes(self, before: tuple[WarmupFrame, ...], find: Counterexample) -> bool:
         """Whether this history gives the pixel of a counterexample the same colour, bit for bit."""
         renderer = Renderer(self._scene, self._settings, world=self._world)
-        self._trace_before(renderer, before)
+        trace_before(renderer, before, self._cancel)
         frame = renderer.render(find.time, find.seen_camera, self._cancel)
         return vector(frame.color[find.y, find.x]) == find.color
 
-    def _trace_before(self, renderer: Renderer, before: tuple[WarmupFrame, ...]) -> History:
-        renderer.settings, history = replace(self._settings, verify=False), History(self._scene)
-        for traced in before:
-            history.add(renderer.render(traced.time, traced.camera, self._cancel), traced)
-        return history
-
     # --- random views -----------------------------------------------------------------------------
-
-    def _target(self, find: Counterexample) -> np.ndarray:
-        """Return the point that the pixel of a counterexample shows."""
-        frame = self._primary_rays(find.time, find.seen_camera)
-        right, up, forward = frame.camera.basis()
-        pixel = 2.0 * math.tan(math.radians(frame.camera.angle) / 2.0) / frame.height
-        x, y = find.x + 0.5 - 0.5 * frame.width, 0.5 * frame.height - find.y - 0.5
-        direction = forward + pixel * (x * right + y * up)
-        depth = float(frame.depth[find.y, find.x])
-        return np.asarray(frame.camera.position + depth * direction / np.linalg.norm(direction))
 
     def _ahead(self, time: float, camera: Camera) -> np.ndarray:
         """Return a point ahead of the camera, at the median depth of what it sees."""

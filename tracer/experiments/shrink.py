@@ -17,12 +17,12 @@ from tracer.culling.verdicts import Verdict
 from tracer.editing.edits import NEVER as HIDDEN
 from tracer.editing.edits import subset
 from tracer.experiments.counterexample import Counterexample
-from tracer.experiments.hunt import VISIBLE, History, find_at
+from tracer.experiments.hunt import VISIBLE, History, find_at, repeatable, trace_before, wrong_in
 from tracer.experiments.runner import Run, never
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame, Settings
 from tracer.geometry.world import World
-from tracer.inspect.projection import at_depth
+from tracer.inspect.projection import seen_at
 from tracer.inspect.reasons import MEANING
 from tracer.inspect.why_in_words import kind_of
 from tracer.method import Method, title_of
@@ -51,9 +51,7 @@ class WrongPixel:
 
     def checked(self) -> WrongPixel:
         """Return it as it is traced here; raises ValueError, in one line, for a pixel outside of the picture."""
-        settings = replace(self.settings, samples=1, verify=False, modes=False).validated()
-        if Method.parse(settings.method).has_certificates:
-            settings = replace(settings, threads=1)  # which certificates are made depends on the turns of threads
+        settings = repeatable(replace(self.settings, verify=False))
         if not (0 <= self.x < settings.width and 0 <= self.y < settings.height):
             raise ValueError(f"--pixel {self.x},{self.y}: the picture is {settings.width} x {settings.height}")
         return replace(self, settings=settings)
@@ -88,14 +86,12 @@ class Shrunk:
 # --- whether it is wrong ------------------------------------------------------------------------------
 
 
-def _traced(scene: Scene, wrong: WrongPixel, cancel: Cancel) -> tuple[Renderer, Frame, History, list[Frame]]:
-    """The picture, with every culled ray verified, what has traced it, and the frames before it."""
-    renderer, history, before = Renderer(scene, wrong.settings), History(scene), []
-    for one in wrong.before:
-        before.append(renderer.render(one.time, one.camera, cancel))
-        history.add(before[-1], one)
+def _traced(scene: Scene, wrong: WrongPixel, cancel: Cancel) -> tuple[Renderer, Frame, History]:
+    """What has traced the picture, the picture with every culled ray verified, and the frames before it."""
+    renderer = Renderer(scene, wrong.settings)
+    history = trace_before(renderer, wrong.before, cancel)
     renderer.settings = replace(wrong.settings, verify=True)
-    return renderer, renderer.render(wrong.time, wrong.camera, cancel), history, before
+    return renderer, renderer.render(wrong.time, wrong.camera, cancel), history
 
 
 def error(scene: Scene, wrong: WrongPixel, cancel: Cancel = never) -> float:
@@ -104,7 +100,7 @@ def error(scene: Scene, wrong: WrongPixel, cancel: Cancel = never) -> float:
     0 where none of its shadow answers is wrong, or nobody would see it."""
     if not scene.primitive_count or not scene.lights:
         return 0.0
-    _, frame, _, _ = _traced(scene, wrong, cancel)
+    _, frame, _ = _traced(scene, wrong, cancel)
     assert frame.wrong is not None and frame.reference is not None
     off = (frame.color - frame.reference)[wrong.y, wrong.x]
     most = float(off[np.abs(off).argmax()])
@@ -114,7 +110,7 @@ def error(scene: Scene, wrong: WrongPixel, cancel: Cancel = never) -> float:
 def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | None:
     """Return what is wrong at the pixel, and a sentence that names the rule of the paper that failed; None where no
     answer is wrong."""
-    renderer, frame, history, before = _traced(scene, wrong, never)
+    renderer, frame, history = _traced(scene, wrong, never)
     find = find_at(renderer, frame, wrong.x, wrong.y, history, never)
     if find is None:
         return None
@@ -122,38 +118,38 @@ def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | N
     if find.bounces == 0:
         unit = int(frame.unit[wrong.y, wrong.x])  # which may be a cell of it
         find = history.with_teacher(find, unit)
-    return find, _failed_rule(scene, find, unit, renderer, frame, before)
+    return replace(find, **wrong_in(frame)[1]), _failed_rule(scene, find, unit, renderer, frame)
 
 
-def _failed_rule(
-    scene: Scene, find: Counterexample, unit: int, renderer: Renderer, frame: Frame, before: Sequence[Frame]
-) -> str:
+def _failed_rule(scene: Scene, find: Counterexample, unit: int, renderer: Renderer, frame: Frame) -> str:
     verdict = next(one for one in Verdict if one.value == find.verdict)
     method = title_of(frame.settings.method)
     if verdict not in (Verdict.FULL_SHADOW, Verdict.NON_SHADOW) or find.taught < 0:
         return f"This is no rule of the paper, but {method}'s own answer. {MEANING[verdict]}"
     what = f"{kind_of(scene, find.primitive)} {find.primitive}"
     what = f"the cell of {what}" if frame.cells is not None else what
-    light, mode = named_light(scene.lights, find.light), find.verdict
-    then = before[find.taught]
+    light, mode, before = named_light(scene.lights, find.light), find.verdict, find.before
     teacher = f"frame {find.taught + 1} of the {len(before)} before" if len(before) > 1 else "the frame before"
     met = "none of its shadow rays was blocked" if find.lit else "all of its shadow rays were blocked"
     learnt = f"In {teacher}, {met} on the way to {light}, which set {mode} (§2.5)"
-    seen, alone = int(then.pixel_count[unit]), 0
+    seen = alone = 0
     if frame.cells is None and find.bounces == 0:
-        rays = replace(then.settings, method="none", depth=0)
-        alone_in = with_primitives(scene, [find.primitive])
-        alone = int((Renderer(alone_in, rays).render(then.time, then.camera).primitive == 0).sum())
+        then, rays = before[find.taught], replace(frame.settings, method="none", depth=0, verify=False)
+        seen, alone = (
+            int(np.count_nonzero(Renderer(some, rays).render(then.time, then.camera).primitive == number))
+            for some, number in ((scene, find.primitive), (with_primitives(scene, [find.primitive]), 0))
+        )
+    now, highest, factor = int(frame.pixel_count[unit]), int(renderer.highest_before[unit]), frame.settings.zoom_factor
+    trust = "takes that to hold for all of it"
     if alone > seen > 0:
         failed = f"Occlusion testing (§2.3) failed: {what} showed {seen:,} of {alone:,} pixels, but passed for whole"
-        return f"{failed}. {learnt}; shadow testing (§2.4) takes that to hold for all of it."
-    now, highest, factor = int(frame.pixel_count[unit]), int(renderer.highest_before[unit]), frame.settings.zoom_factor
-    if now > highest > 0:
+    elif now > highest > 0:
         failed = f"Occlusion-mode setting (§2.6) failed: {what} covers {now:,} pixels, {highest:,} when examined, "
         failed += f"and no frame before has found it more than {factor:g} times as large"
-        return f"{failed}. {learnt}; shadow testing (§2.4) still trusts that."
-    failed = f"Shadow-mode setting (§2.5) failed, as it knows {what} by a few rays"
-    return f"{failed}. {learnt}; shadow testing (§2.4) takes that to hold for all of it."
+        trust = "still trusts that"
+    else:
+        failed = f"Shadow-mode setting (§2.5) failed, as it knows {what} by a few rays"
+    return f"{failed}. {learnt}; shadow testing (§2.4) {trust}."
 
 
 # --- what can be taken away ---------------------------------------------------------------------------
@@ -215,11 +211,10 @@ def with_area(scene: Scene, area: float) -> Scene:
 def _far_ones_first(scene: Scene, traced: Scene, wrong: WrongPixel, cancel: Cancel) -> NDArray[np.intp]:
     """The primitives by how far their middles are from the way between what the pixel shows and the light whose answer
     is wrong, and last those that the answer is about: what lies far away is rarely needed."""
-    renderer, frame, history, _ = _traced(traced, wrong, cancel)
+    renderer, frame, history = _traced(traced, wrong, cancel)
     find = find_at(renderer, frame, wrong.x, wrong.y, history, cancel)
     assert find is not None
-    place = (wrong.x + 0.5) / frame.width, (wrong.y + 0.5) / frame.height
-    point = np.asarray(at_depth(frame, place, float(frame.depth[wrong.y, wrong.x])))
+    point = seen_at(frame, wrong.x, wrong.y)
     way = scene.light_positions(wrong.time)[find.light] - point
     middles = np.empty((scene.primitive_count, 3))
     for index, one in enumerate(scene.objects):

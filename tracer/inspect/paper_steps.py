@@ -219,8 +219,10 @@ class _Run:
         self._join_others("2.5", reference.set_shadow_modes)
         for one in concerned:
             run(Part("2.5", one), as_python(reference.set_shadow_modes_of), work, one)
-        seen = work.world, work.camera, work.primitive, primitives_are_units(), work.primitive, settings.symmetric
-        occlusion_testing(*seen, 0, frame.height, np.zeros_like(frame.modes), work.occluded)
+        occlusion_testing(
+            work.world, work.camera, work.primitive, primitives_are_units(), work.primitive, settings.symmetric,
+            0, frame.height, np.zeros_like(frame.modes), work.occluded,
+        )  # fmt: skip
         modes.pixel_count[concerned] = frame.pixel_count[concerned]
         self._join_others("2.6", reference.set_occlusion_modes)
         for one in concerned:
@@ -241,7 +243,8 @@ class _Run:
         plain = as_python(reference.reached_by_light)
         reached = FunctionType(plain.__code__, {**plain.__globals__, "_blocked": self._blocked}, plain.__name__)
         for ray in self._rays:
-            for light in [] if ray.shadows is None else np.flatnonzero(ray.shadows.verdict != AWAY).tolist():
+            assert ray.shadows is not None, "it has hit something"
+            for light in np.flatnonzero(ray.shadows.verdict != AWAY).tolist():
                 if self._cancelled is not None and self._cancelled():
                     raise Cancelled("cancelled")
                 part = Part("2.4", ray.primitive, light, ray.number)

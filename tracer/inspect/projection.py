@@ -51,6 +51,15 @@ def at_depth(frame: Frame, at: tuple[float, float], depth: float) -> tuple[float
     return float(x), float(y), float(z)
 
 
+def seen_at(frame: Frame, x: int, y: int) -> NDArray[np.float64]:
+    """The point (3,) that a pixel shows."""
+    right, up, forward = frame.camera.basis()
+    pixel = 2.0 * math.tan(math.radians(frame.camera.angle) / 2.0) / frame.height
+    across, above = x + 0.5 - 0.5 * frame.width, 0.5 * frame.height - y - 0.5
+    way = forward + pixel * (across * right + above * up)
+    return np.asarray(frame.camera.position + float(frame.depth[y, x]) * way / np.linalg.norm(way))
+
+
 def strokes(frame: Frame, line: ArrayLike) -> list[Stroke]:
     """A line through points (n, 3) as it is drawn: what leaves the picture cut off, hidden parts in dashes."""
     corners = seen_from(frame.camera, line)

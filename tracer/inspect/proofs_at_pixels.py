@@ -11,7 +11,6 @@ the frame, and Cancelled once `cancelled()` is true.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,30 +20,28 @@ from tracer.culling.fate import FATE, Fate
 from tracer.geometry.camera import pinhole
 from tracer.methods.certified import CertifiedCells
 from tracer.neighbours.certified.cells import ALONG_U, ALONG_V, CORNER, NORMAL
-from tracer.neighbours.certified.slack import SlackFinder, proved_cells
+from tracer.neighbours.certified.slack import Cancel, SlackFinder, proved_cells
 
 if TYPE_CHECKING:
     from tracer.frame import Frame
     from tracer.renderer import Renderer
 
-Cancel = Callable[[], bool] | None
 
-
-def _finder_for(renderer: Renderer, frame: Frame) -> SlackFinder:
+def _finder_for(renderer: Renderer, frame: Frame) -> tuple[SlackFinder, NDArray[np.int32]]:
+    """What finds slack, and the cell at each pixel (h, w)."""
     method = renderer.state.method("certified")
     if not isinstance(method, CertifiedCells) or method.store is None or frame.cells is None:
         raise LookupError("the frame has no certificates of cells")
     there = renderer.scene.light_positions(frame.time)[: method.store.count].astype(np.float32)
     if not np.array_equal(method.store.lights, there):
         raise LookupError("another frame has begun, with lights elsewhere")
-    return method.slack
+    return method.slack, frame.cells
 
 
 def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
     """(h, w) the slack of a light's certificates, in units of the scene; -1 where none says all."""
-    finder = _finder_for(renderer, frame)
-    cells, cell, slack = finder.store.cells, frame.cells, np.full(frame.primitive.shape, -1.0, np.float32)
-    assert cell is not None, "there are certificates"
+    finder, cell = _finder_for(renderer, frame)
+    cells, slack = finder.store.cells, np.full(frame.primitive.shape, -1.0, np.float32)
     if light < finder.store.count and finder.store.certified[light]:
         there = (cell > 0) & (cell < cells.used[0])
         there[there] = cells.owner[cell[there]] >> 1 == frame.primitive[there]  # cells may have other numbers by now
@@ -58,9 +55,10 @@ def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Can
 def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None) -> NDArray[np.int32]:
     """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
     `record_fates`."""
-    finder, rays = _finder_for(renderer, frame), pinhole(frame.camera, frame.width, frame.height)
-    if frame.fates is None or frame.cells is None:
+    finder, cells = _finder_for(renderer, frame)
+    if frame.fates is None:
         raise ValueError("the frame did not record what became of its shadow rays")
+    rays = pinhole(frame.camera, frame.width, frame.height)
     certified = finder.store.certified
     traced = (frame.fates[..., : len(certified)] & FATE == Fate.TRACED) & certified
     y, x, light = np.nonzero(traced & (frame.primitive >= 0)[..., None])
@@ -72,7 +70,7 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     eye = np.asarray(rays.origin) - row[:, CORNER : CORNER + 3]
     u, v = (np.einsum("ij,ij->i", eye + way, row[:, at : at + 3]) for at in (ALONG_U, ALONG_V))
     owner = 2 * frame.primitive[y, x] + (np.einsum("ij,ij->i", eye, row[:, NORMAL : NORMAL + 3]) < 0.0)
-    cell = np.clip(frame.cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
+    cell = np.clip(cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
     proved = finder.are_provable(owner.astype(np.int32), u, v, cell, light.astype(np.int32), cancelled)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)

@@ -63,10 +63,11 @@ def choose(data, call, light, count, counts):
     rays are not quicker."""
     given, certified = call_at(call), view_at(data)
     points, batch, found = points_in(given.points), shadow_batch_in(given.shadows), cell_points_in(scratch_of(given))
-    if light < len(certified.lamps.known) and certified.lamps.known[light] != 0:
+    lamps = certified.lamps
+    if light < len(lamps.known) and lamps.known[light] != 0:
         answers = lamp_answers_in(scratch_of(given)[CELL_POINT_ROWS:])
         if given.nth == 0:
-            find_answers(certified, points, answers, batch, given.samples, given.sample, light, count, i64_at(counts))
+            find_answers(lamps, points, answers, batch, given.samples, given.sample, light, count, i64_at(counts))
         answer_sample(answers, given.nth, count, batch, i64_at(counts))
         return
     asks, position = given.bounce >= certified.first_asking, given.samples[given.sample]
@@ -147,8 +148,8 @@ class CertifiedCells(WithStore):
             return
 
         def request(numbers: NDArray[np.int64], requests: Requests) -> None:
-            view = store.view(len(tiles), requests)  # the block holds addresses of arrays that only this keeps
-            block = pack(view)
+            view = store.view(len(tiles), requests, NOWHERE)
+            block = pack(view)  # which holds addresses of arrays that only the view keeps
             request_in_tiles(block.ctypes.data, frame.rays, tiles, numbers, frame.lights, frame.buffers)
 
         budget = Budget(frame.settings.certificates, seconds)

@@ -17,8 +17,6 @@ from tracer.scene.lights import Light
 from tracer.scene.model import SPHERE, Scene, SceneObject
 from tracer.scene.normals import geometric_normals
 
-_STILL = "still"  # a track that moves nothing, so that what could move stays no part of what never moves
-
 
 def as_word(name: str) -> str:
     """Return a name as a word of AFF."""
@@ -37,15 +35,18 @@ def aff_text(scene: Scene) -> str:
     ]
     shown = [one for one in scene.objects if len(one.triangles) or len(one.quadrics)]
     names = {e for one in shown for e in one.chain if isinstance(e, str)} | {light.track for light in scene.lights}
-    tracks = {name: tracks for name, tracks in scene.animation.tracks.items() if name in names}
+    tracks = {name: track for name, track in scene.animation.tracks.items() if name in names}
+    still = "still"  # a track that moves nothing, so that what could move stays no part of what never moves
+    while still in names:
+        still += "_"
     for name, track in tracks.items():
         lines += _tracks(name, track)
     if any(one.chain and not any(isinstance(e, str) for e in one.chain) for one in shown):
-        lines.append(f"k {_STILL} {{ visibility 1 0 1 }}")
+        lines.append(f"k {still} {{ visibility 1 0 1 }}")
     lines += map(_light, scene.lights)
     for one in shown:
-        before, after = _opened(one.chain)
-        lines += [*before, *_geometry(scene, one, {*tracks, _STILL}), *after]
+        before, after = _opened(one.chain, still)
+        lines += [*before, *_geometry(scene, one, {*tracks, still}), *after]
     return "\n".join(lines) + "\n"
 
 
@@ -84,9 +85,9 @@ def _light(light: Light) -> str:
 # --- transforms ------------------------------------------------------------------------------------
 
 
-def _opened(chain: Chain) -> tuple[list[str], list[str]]:
-    """What opens the transforms of a chain, and what closes them."""
-    lines = [] if not chain or any(isinstance(e, str) for e in chain) else [f"x {_STILL} {{"]
+def _opened(chain: Chain, still: str) -> tuple[list[str], list[str]]:
+    """What opens the transforms of a chain, and what closes them; one without tracks goes by the track `still`."""
+    lines = [] if not chain or any(isinstance(e, str) for e in chain) else [f"x {still} {{"]
     for element in chain:
         lines += [f"x {element} {{"] if isinstance(element, str) else _matrix(element)
     return lines, ["}"] * len(lines)

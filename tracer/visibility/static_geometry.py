@@ -74,7 +74,10 @@ class StaticGeometry:
             hold.
     """
 
-    def __init__(self, world: World, lights: int, threads: int, asks: bool) -> None:
+    def __init__(
+        self, world: World, lights: int, threads: int, asks: bool, known: StaticGeometry | None = None
+    ) -> None:
+        """`asks`: somebody asks light-space triangles; `known` has what never moves of the same world."""
         self._world, self._lights, self._threads = world, lights, threads
         self._primitives = world.primitives
         self.first_quadric = len(world.primitives.triangles)
@@ -85,7 +88,12 @@ class StaticGeometry:
         self.allowed = np.inf  # how large what moves may be for boxes to hold, which are padded by a part of that
         self._shapes: dict[int, Topology] = {}
         self._bounds_of: dict[int, NDArray[np.float64]] = {}
-        self._add(0, world.outlines())
+        if known is None:
+            self._add(0, world.outlines())
+        else:
+            for rows in self._rows_of(0):
+                self.rows[rows] = known.rows[rows]
+            self._shapes[0], self._bounds_of[0] = known._shapes[0], known._bounds_of[0]
         self._join()
 
     def _add(self, index: int, outlines: Outlines) -> None:

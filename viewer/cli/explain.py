@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.text import Text
 from rich.tree import Tree
 
-from tracer.frame import Frame
-from tracer.inspect.mode_origins import ModeOrigins
+from tracer.experiments.hunt import History
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.inspect.paper_steps import PaperSteps, in_words, paper_steps, text
 from tracer.inspect.path_records import VERDICTS, PathRay, RayTree, ShadowRays
 from tracer.inspect.reasons import Why
@@ -27,7 +27,7 @@ from tracer.scene.model import Scene
 from tracer.util.text import printable
 from viewer.cli import options
 from viewer.cli.arguments import Parser, count
-from viewer.cli.console import working
+from viewer.cli.console import Work, working
 from viewer.output.ray_rows import RayFilter, RayRow, RayRows, RaySubset, totals
 from viewer.services.inspector import with_origins
 
@@ -68,48 +68,43 @@ def run(given: Namespace) -> int:
     settings, (x, y) = options.pixel_settings(given), given.pixel
     if given.steps:
         settings = replace(settings, modes=not Method.parse(settings.method).clusters)
-    stepped: list[PaperSteps] = []
     with working() as work:
         scene = options.read_scene(given.path, given, work)
         light = None if given.light is None else options.light_index(given, "--light ", given.light, scene)
         time = options.moment(scene, given)
+        frames = [*options.frames_before(scene, given, work), WarmupFrame(time, given.camera)]
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method)
         renderer = Renderer(scene, settings, work.progress)
-        before = options.frames_before(scene, given, work)
-        origins, places = ModeOrigins(len(scene.lights)), None
-        for done, earlier in enumerate(before):
-            work.count(f"warming up, frame {done + 1} of {len(before)}", done, len(before) + 1)
-            frame = renderer.render(earlier.time, earlier.camera, work.cancelled)
-            if given.steps:
-                stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
-            were, places = places, scene.light_positions(earlier.time)
-            origins.add(done, frame.modes, None if were is None else (were != places).any(axis=1))  # moved lights
-        work.count("tracing", len(before), len(before) + 1)
-        frame = renderer.render(time, given.camera, work.cancelled)
         if given.steps:
-            stepped.append(paper_steps(renderer, frame, x, y, work.cancelled))
-        found = _with_origins(why(renderer, frame, x, y, work.cancelled), frame, origins, len(before))
+            each = options.traced(renderer, frames, work)
+            stepped = [paper_steps(renderer, frame, x, y, work.cancelled) for frame in each]
+        else:
+            found = _why(renderer, frames, x, y, work)
+    width, height = given.size
+    title = f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {width} × {height}, method {settings.method}"
+    if given.steps:
+        for number, steps in enumerate(stepped, 1):
+            print(printable(f"{title}, frame {number} of {len(stepped)}, by tracer/reference.py"))
+            print(*map(printable, steps_lines(steps, scene, light)), sep="\n")
+        return 0
     tree = found.tree
     assert tree is not None
     if given.json:
         print(json.dumps(ray_data(tree, scene) | {"why": why_data(found, scene)}, indent=2))
-        return 0
-    title = (
-        f"{given.path.name}, {time:.3f} s, pixel {x},{y} of {frame.width} × {frame.height}, method {settings.method}"
-    )
-    for number, steps in enumerate(stepped, 1):
-        print(printable(f"{title}, frame {number} of {len(stepped)}, by tracer/reference.py"))
-        print(*map(printable, steps_lines(steps, scene, light)), sep="\n")
-    if given.steps:
-        return 0
-    _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
+    else:
+        _print(found, tree, scene, RayFilter(RaySubset(given.only), light), title)
     return 0
 
 
-def _with_origins(found: Why, frame: Frame, modes: ModeOrigins, before: int) -> Why:
-    """Add which of the frames before gave the primitive its modes."""
-    unit = int(frame.cell[found.y, found.x])
-    origins = modes.of(unit) if found.primitive >= 0 and frame.settings.keeps_modes else None
+def _why(renderer: Renderer, frames: list[WarmupFrame], x: int, y: int, work: Work) -> Why:
+    """Trace frames, and find out about a pixel of the last one, with which of those before gave it its modes."""
+    history, before = History(renderer.scene), len(frames) - 1
+    for number, frame in enumerate(options.traced(renderer, frames, work)):
+        if number < before:
+            history.add(frame, frames[number])
+    found = why(renderer, frame, x, y, work.cancelled)
+    keeps_modes = found.primitive >= 0 and frame.settings.keeps_modes
+    origins = history.origins.of(int(frame.unit[y, x])) if keeps_modes else None
 
     def name(number: int) -> str:
         return "the frame before" if before == 1 else f"frame {number + 1} of the {before} frames before this"
@@ -177,12 +172,12 @@ def why_lines(found: Why, scene: Scene, light: int | None = None) -> list[str]:
     shared: dict[str, list[int]] = {}
     for one in found.reasons:
         if light is None or one.light == light:
-            text = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
-            shared.setdefault(text, []).append(one.light)
-    for text, lights in shared.items():
+            sentence = " ".join(filter(None, (plain(words.reason(one)), plain(words.answer(one)))))
+            shared.setdefault(sentence, []).append(one.light)
+    for sentence, lights in shared.items():
         named = ", ".join(named_light(scene.lights, number) for number in lights[:MOST_LIGHTS])
         more = f" and {len(lights) - MOST_LIGHTS} more" if len(lights) > MOST_LIGHTS else ""
-        lines.append(f"{named}{more}: {text}")
+        lines.append(f"{named}{more}: {sentence}")
     if found.coverage is not None:
         lines.append(plain(words.coverage(found.coverage)))
     lines += [plain(words.reference(one)) for one in found.references]

@@ -25,6 +25,7 @@ from viewer.output.reports import findings
 from viewer.services import stills
 from viewer.state.methods import NO_CULLING
 from viewer.state.plans import HuntPlan
+from viewer.util.files import take_folder
 
 ALL = "hunt.json"
 """What holds all findings; each has a figure and a JSON of its own beside it."""
@@ -74,7 +75,7 @@ def run(given: Namespace) -> int:
         times = [take.time for take in along_path(scene, first, last)][:: given.step]
         search = Search(settings, times, given.camera, given.around, given.radius, given.seed, given.keep)
         if given.output is not None:
-            _check_folder(given.output)
+            take_folder(given.output, lambda path: path.name == ALL or path.match("find-*.*"))
         options.prepare_kernels(work, len(scene.lights), given.accelerator, settings.method, NO_CULLING)
         world = World(scene, times[0], settings.accelerator, work.progress)
         found = work.perform(Hunt(scene, search), world)
@@ -106,14 +107,3 @@ def _write(found: hunt.Results, scene: Scene, search: Search, world: World, give
         written.append(stem.with_suffix(".json"))
     exports.write_json(given.output / ALL, found.to_dict(scene))
     return [*written, given.output / ALL]
-
-
-def _check_folder(folder: Path) -> None:
-    """Make the folder; raises OSError, in one line, where that cannot be, or where a hunt has written to it already."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        taken = next((path.name for path in folder.iterdir() if path.name == ALL or path.match("find-*.*")), None)
-    except OSError as error:
-        raise OSError(f"{folder}: cannot write counterexamples there: {error.strerror or error}") from None
-    if taken is not None:
-        raise OSError(f"{folder}: has counterexamples already ({taken}); give another folder")

@@ -6,8 +6,9 @@ import argparse
 import math
 import os
 from argparse import Namespace
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tracer.compiling.compilation import compiled_before, is_first, make_all_ready
 from tracer.editing.edits import NO_EDITS, Edits, edited
@@ -28,6 +29,10 @@ from viewer.state.draw_options import Slice
 from viewer.state.view_state import EDITS, as_options
 from viewer.util import resources
 from viewer.views.legend import lights_in_words
+
+if TYPE_CHECKING:
+    from tracer.frame import Frame
+    from tracer.renderer import Renderer
 
 CAMERA = "position, direction, up, angle; a file with that, or a saved picture"
 METHODS = "a method of the list below, with additions as in certified+cache"
@@ -237,6 +242,13 @@ def frames_before(scene: Scene, options: Namespace, work: Work) -> list[WarmupFr
     repeats = options.repeat if options.repeat is not None else 0 if options.warmup or options.before else 1
     times = [*warmup_times(scene, time, options.warmup, work), *[time] * repeats]
     return [*options.before, *(WarmupFrame(then, options.camera) for then in times)]
+
+
+def traced(renderer: Renderer, frames: Sequence[WarmupFrame], work: Work) -> Iterator[Frame]:
+    """Trace frames one after another, and give each; raises Cancelled."""
+    for done, one in enumerate(frames):
+        work.count(f"tracing, frame {done + 1} of {len(frames)}", done, len(frames))
+        yield renderer.render(one.time, one.camera, work.cancelled)
 
 
 # --- tracing ---------------------------------------------------------------------------------------

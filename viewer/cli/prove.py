@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.methods.certified import CertifiedCells
 from tracer.neighbours.certified.proofs import as_json
 from tracer.renderer import Renderer
@@ -57,11 +58,8 @@ def run(given: Namespace) -> int:
         time, before = options.moment(scene, given), options.frames_before(scene, given, work)
         options.prepare_kernels(work, len(scene.lights), given.accelerator, METHOD)
         renderer = Renderer(scene, settings, work.progress)
-        for done, one in enumerate(before):
-            work.count("tracing", done, len(before) + 1)
-            renderer.render(one.time, one.camera, work.cancelled)
-        work.count("tracing", len(before), len(before) + 1)
-        frame = renderer.render(time, given.camera, work.cancelled)
+        for frame in options.traced(renderer, [*before, WarmupFrame(time, given.camera)], work):  # noqa: B007
+            pass
         method = renderer.state.method(METHOD)
         if not isinstance(method, CertifiedCells) or method.store is None or frame.cells is None:
             raise ValueError(f"{given.path.name}: there are no cells; prove takes scenes of up to 31 lights")

@@ -41,11 +41,10 @@ def save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: Vi
     Raises OSError in one line."""
     words = [commands.scene_word(Path(state.scene)), *commands.options(replace(state, warmup=Warmup()))]
     words += ["--pixel", f"{find.x},{find.y}", "--before", path.name]
-    told = counterexample.to_json(find, scene) | {"size": found.size, "method": found.method}
-    told |= {"scene": found.scene, "settings": found.settings}
-    told |= {
+    told = {
+        "size": found.size, "method": found.method, "scene": found.scene, "settings": found.settings,
         "words": counterexample.in_words(find, scene),
         "explain": shell_line(["shadowcull", "explain", *words, "--only", "wrong"]),
         "shrink": shell_line(["shadowcull", "shrink", *words, "-o", f"{path.stem}-shrunk"]),
-    }
-    exports.write_json(path, told, indent=1)
+    }  # fmt: skip
+    exports.write_json(path, counterexample.to_json(find, scene) | told, indent=1)

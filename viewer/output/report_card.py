@@ -55,7 +55,7 @@ def in_words(card: Card) -> list[str]:
     elif not card.other_pictures:
         said.append(f"Pictures and counters are the same with {card.threads} threads as with one.")
     if worst := card.worst:
-        enough = f"It was shrunk from {worst.first} to {worst.left}: " if worst.left else ""
+        enough = f"It was shrunk from {worst.first} to {worst.left}. " if worst.left else ""
         said.append(f"The worst wrong pixel: {worst.where}. {enough}{worst.words}")
     return said if card.whole else [*said, "The card is not whole: it was cancelled."]
 

@@ -28,7 +28,7 @@ from viewer.services.runs import Runs
 from viewer.state.picking import wrong_at
 from viewer.state.preferences import Preferences
 from viewer.state.session import Session
-from viewer.util.files import write_text
+from viewer.util.files import take_folder, write_text
 
 SCENE, FRAMES, FIGURE, TEST = "scene.aff", "wrong.json", "wrong.png", "test_wrong.py"
 _TEST = '''\
@@ -73,7 +73,7 @@ class ShrinkRun(Shrink):
         """Raises ValueError and OSError, in one line, for a pixel that is not there and for a folder in use."""
         super().__init__(scene, wrong)
         self.folder, self.rule = folder, ""
-        _check_folder(folder)
+        take_folder(folder, lambda path: True)
 
     def steps(self, scene: Scene, world: World | None, cancel: Callable[[], bool]) -> Iterator[Shrunk]:
         try:
@@ -150,14 +150,3 @@ class Shrinking:
     def _run(self, scene: Scene, wrong: WrongPixel) -> ShrinkRun:
         name = f"{scene.path.stem}-shrunk-{datetime.now():%Y-%m-%d-%H-%M-%S}"
         return ShrinkRun(scene, wrong, self._preferences.picture_folder / name)
-
-
-def _check_folder(folder: Path) -> None:
-    """Make the folder; raises OSError, in one line, where that cannot be, or where something is in it."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        taken = next((path.name for path in folder.iterdir()), None)
-    except OSError as error:
-        raise OSError(f"{folder}: cannot write there: {error.strerror or error}") from None
-    if taken is not None:
-        raise OSError(f"{folder}: is in use already ({taken}); give another folder")

@@ -64,6 +64,8 @@ class Stepping:
         if self._taken is traced.frame.primitive:
             return
         self._newest.take(self._query(run_text, traced.frame, *at))
+        if self._newest.problem:
+            self._forget(f"No steps: {self._newest.problem}.", traced.frame.primitive)
         answer: Answer | None = self._newest.answer  # of the frame before, perhaps
         if answer is not None and answer[1] is not None and answer[0].primitive is not self._taken:
             self._take(answer[0], answer[1])
@@ -101,11 +103,13 @@ class Stepping:
         """Go a step on or back, also into the frame after this one, or before it."""
         if self.now is None:
             return
-        place, last = self.place + by, len(self.now.steps) - 1
-        if 0 <= place <= last:
-            self.place = place
-        elif place > last:
+        place = self.place + by
+        if place >= len(self.now.steps):
             self._go_on(lambda: None)
+            return
+        self.wanted = None  # whoever goes back waits for no frame any more
+        if place >= 0:
+            self.place = place
         elif self.frame:
             self.frame -= 1
             self.place = len(self.now.steps) - 1

@@ -34,6 +34,17 @@ def check_writable(path: Path) -> None:
         raise OSError(f"{path}: the folder {target.parent} cannot be written to: {error.strerror or error}") from None
 
 
+def take_folder(folder: Path, is_result: Callable[[Path], bool]) -> None:
+    """Make a folder for results; raises OSError, in one line, where that cannot be, or where it has results already."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        found = next((path.name for path in folder.iterdir() if is_result(path)), None)
+    except OSError as error:
+        raise OSError(f"{folder}: cannot write there: {error.strerror or error}") from None
+    if found is not None:
+        raise OSError(f"{folder}: is in use already ({found}); give another folder")
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[tuple[Path, BinaryIO]]:
     """The name and the open file that take the name `path` at the end of the block, complete and on the disk.

@@ -95,8 +95,7 @@ def test_steps_print_the_text_as_it_runs_in_each_frame(run: Run) -> None:
     assert "counts[DYNAMIC_ONLY]: 0 → 1" in second and "in_shadow = _blocked" not in second
     one = run.ok(*ROOM, "--method", "paper", "--pixel", "24,16", "--steps", "--light", 1, "--repeat", 0)
     assert "light 1, primary ray" in one and "light 0, primary ray" not in one and "frame 1 of 1" in one
-    assert "these are the steps that Paper would take" in run.ok(
-        *ROOM, "--pixel", "24,16", "--steps", "--method", "none"
-    )
+    beside = run.ok(*ROOM, "--pixel", "24,16", "--steps", "--method", "none")
+    assert "these are the steps that Paper would take" in beside
     said = run.fails(*ROOM, "--method", "cells", "--pixel", "24,16", "--steps")
     assert "keeps modes of cells, and the text speaks of primitives" in said

@@ -38,7 +38,7 @@ def test_finds_are_written_checked_and_explained(run: Run) -> None:
     out = run.ok(*command[1:])
     assert "(wrong)" in out and f"light {find['light']}" in out
 
-    assert "has counterexamples already" in run.fails("hunt", "marbles.aff", *SEARCH, "-o", "wrong")
+    assert "is in use already (" in run.fails("hunt", "marbles.aff", *SEARCH, "-o", "wrong")
 
 
 def test_ctrl_c_while_figures_are_drawn_keeps_the_findings(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -109,9 +109,8 @@ def test_its_tone_and_its_range_come_back_where_the_view_has_any(run: Run) -> No
     assert np.array_equal(drawn["distances"], drawn["distances-again"])
     assert kept["again"].tone.in_words() == "+1.5 EV, white 3, filmic" and kept["plain"].tone.neutral
     assert kept["distances"].span == (2.0, 9.0) and kept["distances"].tone.neutral and kept["normals"].span is None
-    toned, plain, distances = (
-        run.ok("render", f"{name}.png", "--print-command") for name in ("toned", "plain", "distances")
-    )
+    names = "toned", "plain", "distances"
+    toned, plain, distances = (run.ok("render", f"{name}.png", "--print-command") for name in names)
     assert "--exposure 1.5 --white 3.0 --tone filmic" in toned and "--range=2.0:9.0" in distances
     assert not any(f"--{option}" in plain for option in ("exposure", "white", "tone", "mark-clipped", "range"))
     run.ok("check", "toned.png", "plain.png", "distances.png")

@@ -163,9 +163,8 @@ def test_seeds_shake_the_camera_and_a_warmup_cuts_paths(shared: Cluster, run: Ru
     study = sweeping.Study(Path("study.toml"), "", {}, ("paper",), (), (1,), 0.02)
     settings = Settings(width=24, height=18, method="paper", accelerator="kdtree", threads=1)
     task = sweeping.Task("room.aff", "", settings, 1, study.shake, 10, 0.0)
-    renderer = sweeping.rows_of(
-        replace(task, frames=((4, scene.frame_time(4)),), before=tuple((n, scene.frame_time(n)) for n in (2, 3))), scene
-    )
+    before = tuple((n, scene.frame_time(n)) for n in (2, 3))
+    renderer = sweeping.rows_of(replace(task, frames=((4, scene.frame_time(4)),), before=before), scene)
     alone = next(renderer)
     assert all(alone[name] == found[1, "paper", 4][name] for name in sweeping.SAME)
 

@@ -110,9 +110,8 @@ def test_pixels_of_reasons_are_those_of_their_picture_alone(desk: PixelDesk):
 def test_lights_are_summed_up_by_the_samples_that_arrive():
     samples = ((16, 16), (16, 3), (16, 0), (4, 0))
     lights = [Reason(0, Rule.OFF, Fate.TRACED, samples=many, lit=lit) for many, lit in samples]
-    assert summary([*lights, Reason(4, Rule.FACES_AWAY, Fate.FACES_AWAY)]) == (
-        "1 lit, 1 in part, 2 in shadow, 1 facing away"
-    )
+    summed_up = summary([*lights, Reason(4, Rule.FACES_AWAY, Fate.FACES_AWAY)])
+    assert summed_up == "1 lit, 1 in part, 2 in shadow, 1 facing away"
     wrong, culled = Reason(5, Rule.OFF, Fate.TRACED, lit=1, wrong=1), Reason(6, Rule.FULL_SHADOW, Fate.CULLED)
     assert [one.light for one in sorted([lights[0], lights[3], culled, wrong], key=telling)] == [5, 6, 0, 0]
 

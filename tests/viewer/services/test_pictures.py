@@ -239,9 +239,8 @@ def test_without_frames_before_it_a_picture_is_the_same_unless_its_state_says_ot
 ) -> None:
     (tmp_path / "room.aff").write_text(ROOM)
     scene = load_scene(tmp_path / "room.aff")
-    state = ViewState(
-        time=scene.frame_time(3), settings=Settings(24, 18, method=method, threads=1), draw=DrawOptions(view)
-    )
+    settings = Settings(24, 18, method=method, threads=1)
+    state = ViewState(time=scene.frame_time(3), settings=settings, draw=DrawOptions(view))
     if needs_history(state):
         return
     alone, later = Renderer(scene, state.settings), Renderer(scene, state.settings)

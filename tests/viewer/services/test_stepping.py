@@ -58,6 +58,10 @@ def test_steps_go_on_and_back_over_frames(desk: SteppingDesk) -> None:
     assert s.place == 1 and len(desk.came) == traced
     desk.to_end()
     s.go(1)
+    s.go(-1)
+    assert s.wanted is None and s.place == len(first.steps) - 2, "who goes back waits for no frame"
+    s.go(1)
+    s.go(1)
     assert s.wanted is not None and s.now is first
     desk.until(lambda: s.frame == 1)
     assert len(desk.came) > traced and s.place == 0 and s.wanted is None and s.now is not first
@@ -129,7 +133,7 @@ def test_no_more_frames_are_kept_than_there_is_room_for(desk: SteppingDesk, monk
     assert len(s.runs) == 3 and s.frame == 2
 
 
-def test_why_there_are_no_steps_is_said(desk: SteppingDesk) -> None:
+def test_why_there_are_no_steps_is_said(desk: SteppingDesk, monkeypatch: pytest.MonkeyPatch) -> None:
     s, c = desk.s, desk.c
     desk.click()
     c.settings.change(method="cells")
@@ -142,6 +146,9 @@ def test_why_there_are_no_steps_is_said(desk: SteppingDesk) -> None:
     c.settings.change(method="certified")
     desk.until(lambda: s.now is not None)
     assert not s.problem and "Paper would take" in s.now.remark
+    monkeypatch.setattr(module, "paper_steps", lambda *_: 1 // 0)
+    c.reset_modes()
+    desk.until(lambda: s.problem.startswith("No steps: ") and s.now is None)
 
 
 def test_a_run_ends_when_another_pixel_is_clicked(desk: SteppingDesk, monkeypatch: pytest.MonkeyPatch) -> None:

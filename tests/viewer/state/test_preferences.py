@@ -46,9 +46,8 @@ def test_of_an_older_format_what_has_the_same_name_is_read(tmp_path: Path):
     (tmp_path / prefs.SETTINGS_FILE).write_text(json.dumps(old))
     read, problem = load_preferences(tmp_path)
     assert problem is None and (read.theme, read.format) == ("light", prefs.FORMAT)
-    assert codec.recalled(read.state) == ViewState.in_window(), (
-        "the default method, which that version stored unasked, too"
-    )
+    fresh = ViewState.in_window()
+    assert codec.recalled(read.state) == fresh, "the default method, which that version stored unasked, too"
     assert read.bookmarks == {"/a.aff": [NamedState("here", {"time": 1.0})]} and read.presets == []
 
 

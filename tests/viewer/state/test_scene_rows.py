@@ -99,9 +99,8 @@ def test_modes_of_cells_are_those_of_all_that_are_seen(now: Edited) -> None:
     frame = in_cells(make_frame(RECORDED))
     only_even = replace(frame, primitive=np.where(frame.cells % 2 == 0, frame.primitive, -1))
     unseen = replace(frame, primitive=np.where(frame.primitive == 2, -1, frame.primitive))
-    all_cells, even, without = (
-        column(tables_of(now, one, 0)[Level.PRIMITIVES], "shadow") for one in (frame, only_even, unseen)
-    )
+    frames = frame, only_even, unseen
+    all_cells, even, without = (column(tables_of(now, one, 0)[Level.PRIMITIVES], "shadow") for one in frames)
     assert all_cells == ["several"] * 7, "each has cells of two kinds"
     assert even[2:4] == ["full shadow", "non-shadow"] and without[2] == NOTHING
 

@@ -76,13 +76,6 @@ class Scratch(NamedTuple):
 
 
 @inlined
-def start_lamp(scratch):
-    """Nothing has been asked about a lamp."""
-    state = i64_at(scratch.state)
-    state[EFFORT], state[LATEST], state[HIDING] = 0, -1, 0
-
-
-@inlined
 def batches_of(count):
     """How many vectors of sixteen so many primitives make, none where they are too many."""
     return (count + LANES - 1) // LANES

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tracer.culling.shadow_testing import may_face
 from tracer.culling.stages import vectors
 from tracer.neighbours.area_lights.area_light_query import (
     ALL_KEPT,
@@ -20,6 +21,7 @@ from tracer.neighbours.area_lights.area_light_query import (
     EFFORT,
     FOR_BEAM,
     FOR_POINTS,
+    HIDING,
     LATEST,
     MARKS,
     NUMBERS,
@@ -32,12 +34,11 @@ from tracer.neighbours.area_lights.area_light_query import (
     ask_vector,
     batches_of,
     find_primitives,
-    start_lamp,
 )
 from tracer.neighbours.area_lights.lamp_answers import decided
 from tracer.neighbours.area_lights.ray_cost import cost_of_rays
-from tracer.runtime.kernels import inlined, subkernel
-from tracer.simd import bits_of, i64_at, lanes_below, load_three, local_memory, ones
+from tracer.runtime.kernels import subkernel
+from tracer.simd import i64_at, lanes_below, local_memory, ones
 from tracer.visibility.area_light_tests import SAMPLES, put_samples
 from tracer.visibility.beams import make_beam, passes_by, put_beam
 from tracer.visibility.error_bounds import LANES
@@ -50,12 +51,11 @@ ADVANCE, SAVINGS, PARDON = 4, 16, 1
 
 
 @subkernel
-def find_answers(certified, points, answers, batch, samples, first, number, count, counts):
+def find_answers(lamps, points, answers, batch, samples, first, number, count, counts):
     """Find what is known of `count` points and lamp `number`, whose samples are those of (any, 3) from the first on.
 
-    A few rays are traced, which have their place in batch, a `ShadowBatch`."""
-    lamps, o, beam = certified.lamps, certified.lamps.occluders, make_beam()
-    place, radius = lamps.places[number], lamps.radii[number]
+    lamps is a `LampsView`.  A few rays are traced, which have their place in batch, a `ShadowBatch`."""
+    o, beam, place, radius = lamps.occluders, make_beam(), lamps.places[number], lamps.radii[number]
     light, many = (place[0], place[1], place[2]), np.int64(lamps.samples[number])
     scratch = Scratch(
         samples=local_memory(SAMPLES),
@@ -70,13 +70,13 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
         often=local_memory(EACH_POINT),
         asked=local_memory(EACH_POINT),
     )
-    start_lamp(scratch)
-    groups = put_samples(samples, first, many, light, scratch.samples)
-    lamp = Lamp(number, light, radius, groups)
+    lamp = Lamp(number, light, radius, put_samples(samples, first, many, light, scratch.samples))
+    state = i64_at(scratch.state)
+    state[EFFORT], state[LATEST], state[HIDING] = 0, -1, 0
     for v in range(vectors(count)):
-        answers.open[v] = _open_points(points, light, radius, v) & lanes_below(count, v)
+        answers.open[v] = may_face(points, light, radius, v) & lanes_below(count, v)
     ray_cost = cost_of_rays(lamps, points, answers.open, batch, samples[first], many, count, counts)
-    state, cost = i64_at(scratch.state), many * ray_cost  # of a point's rays
+    cost = many * ray_cost  # of a point's rays
     most = min(OF_VECTOR, LANES * cost // FOR_POINTS)
     balance = ADVANCE * LANES * cost
     for start in range(0, vectors(count), GROUP):
@@ -93,8 +93,8 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
         found = np.int64(-1)
         if some > 1 and put_beam(beam, points, answers.open, start, end, light, radius, lamps.within):
             found = find_primitives(o, number, beam, min(OF_GROUP, most), scratch, counts)
-            for batch in range(batches_of(found)):
-                prepare_in_tree(o, lamp, scratch.numbers + 64 * batch, scratch.prepared + PREPARED * batch)
+            for k in range(batches_of(found)):
+                prepare_in_tree(o, lamp, scratch.numbers + 64 * k, scratch.prepared + PREPARED * k)
         state[LATEST] = -1
         away = found >= 0 and passes_by(beam, lamps.unknown)
         for v in range(start, end):
@@ -118,13 +118,3 @@ def find_answers(certified, points, answers, batch, samples, first, number, coun
             saved = ray_cost * answered * answered // due
             balance = min(balance + saved - state[EFFORT], SAVINGS * LANES * cost)
             state[EFFORT] = 0
-
-
-@inlined
-def _open_points(points, light, radius, v):
-    """Bits of the points of a vector from which a ray may be due to some sample of a lamp."""
-    px, py, pz = load_three(points.position, v)
-    gx, gy, gz = load_three(points.geometric, v)
-    x, y, z = light[0] - px, light[1] - py, light[2] - pz
-    slack = np.float32(1.001) * radius + np.float32(1e-5) * (abs(light[0]) + abs(light[1]) + abs(light[2]))
-    return bits_of(gx * x + gy * y + gz * z > -slack)

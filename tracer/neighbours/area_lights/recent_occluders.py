@@ -16,13 +16,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tracer.culling.counters import RAYS, TESTS
-from tracer.culling.shadow_testing import LIGHT_MARGIN, shadow_rays
+from tracer.culling.shadow_testing import LIGHT_MARGIN, may_face, shadow_rays
 from tracer.culling.stages import looks_at, vectors
 from tracer.geometry.queries import STATIC_GEOMETRY, any_hits_by
 from tracer.neighbours.area_lights.lamp_answers import ALL, BITS, NOTHING, SOME, keep_bits
 from tracer.runtime.kernels import inlined, subkernel
 from tracer.simd import (
-    bits_of,
     i32_at,
     i32x16,
     i64_at,
@@ -31,7 +30,6 @@ from tracer.simd import (
     load_three,
     local_memory,
     lowest_bit,
-    maximum,
     store,
 )
 from tracer.simd.records import F32, I32, F32x2D
@@ -43,7 +41,7 @@ TRIES = 4  # points of a vector whose rays are traced to find what blocks them, 
 NUMBERS, STATE = 4 * LANES, 24  # bytes
 # Of a lamp's state: how many occluders are known; which is replaced next; and how many vectors in a row had no new one.
 KNOWN, NEXT, IN_VAIN = range(3)
-ONE, ROUNDED = np.float32(1), np.float32(1e-5)  # of lengths, more than what rounding may take
+ONE = np.float32(1)
 
 
 class RecentOccluders(NamedTuple):
@@ -104,31 +102,21 @@ def find_hidden(recent, points, batch, hidden, number, looked, count, counts):
     lamp, state = Lamp(number, light, recent.radii[number], groups), i64_at(room.state)
     state[KNOWN], state[NEXT], state[IN_VAIN] = 0, 0, 0
     store(room.numbers, i32x16(0))
-    uncounted = np.zeros(RAYS + 1, np.int64)
+    made = np.zeros(RAYS + 1, np.int64)  # steps, tests and rays: queries count into arrays
     for v in range(vectors(count)):
         hidden.some[v] = NOTHING
         if not looks_at(looked, v):
             continue
-        facing = _facing(points, light, lamp.radius, v) & lanes_below(count, v)
+        facing = may_face(points, light, lamp.radius, v) & lanes_below(count, v)
         if facing == 0:
             hidden.some[v] = ALL
             continue
         often = 1 if state[IN_VAIN] < 2 else (4 if state[IN_VAIN] < 8 else 16)
         tries = TRIES if v % often == 0 else 0
         if state[KNOWN] > 0 or tries > 0:
-            _ask_vector(recent, points, batch, hidden, v, lamp, first, many, facing, tries, room, uncounted)
+            _ask_vector(recent, points, batch, hidden, v, lamp, first, many, facing, tries, room, made)
     for k in range(RAYS + 1):
-        counts[k] += uncounted[k]
-
-
-@inlined
-def _facing(points, light, radius, v):
-    """Bits of the points of a vector whose surface may face some sample of a lamp: of no others a ray is due."""
-    px, py, pz = load_three(points.position, v)
-    gx, gy, gz = load_three(points.geometric, v)
-    x, y, z = light[0] - px, light[1] - py, light[2] - pz
-    far = maximum(x, -x) + maximum(y, -y) + maximum(z, -z) + (abs(light[0]) + abs(light[1]) + abs(light[2]))
-    return bits_of(gx * x + gy * y + gz * z > -(np.float32(1.001) * radius + ROUNDED * far))
+        counts[k] += made[k]
 
 
 @subkernel

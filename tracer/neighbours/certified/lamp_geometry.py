@@ -20,27 +20,23 @@ if TYPE_CHECKING:
 
 
 class LampGeometry:
-    """The geometry of a world with so many lights, from frame to frame."""
+    """The geometry of a world with so many lights, from frame to frame; `static` knows what never moves."""
 
-    def __init__(self, world: World, lights: int, threads: int) -> None:
-        self._world, self._lights, self._threads = world, lights, threads
+    def __init__(self, world: World, lights: int, threads: int, static: StaticGeometry) -> None:
+        self._world, self._lights, self._threads, self._static = world, lights, threads, static
         self._frame = 0
         self._start()
 
     def _start(self) -> None:
-        self._geometry = StaticGeometry(self._world, self._lights, self._threads, asks=False)
+        self._geometry = StaticGeometry(self._world, self._lights, self._threads, asks=False, known=self._static)
         objects = len(self._world.primitives.triangle_starts) - 1
         self._since = np.zeros(objects, np.int64)  # how long each object has been where it is; 0 where it is not known
         self._fitted = np.zeros(self._lights, np.bool_)  # lights that boxes are fitted to
 
     def update(
-        self,
-        lamps: NDArray[np.bool_],
-        lights: NDArray[np.float32],
-        radii: NDArray[np.float32],
-        moved: NDArray[np.bool_],
-        resting: Resting,
-    ) -> None:
+        self, lamps: NDArray[np.bool_], lights: NDArray[np.float32], radii: NDArray[np.float32],
+        moved: NDArray[np.bool_], resting: Resting,
+    ) -> None:  # fmt: skip
         """Put everything where it is now, and fit boxes to `lamps` (n,), balls of radii (n,) around lights (n, 3), some
         of which have `moved` (n,) since the last frame."""
         if self._world.extent > self._geometry.allowed:  # boxes may have grown beyond those that are known

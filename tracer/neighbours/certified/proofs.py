@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.culling.modes import shadow_mode
 from tracer.neighbours.certified.cells import FULL, LIT, named_by
 from tracer.neighbours.certified.certify import make_scratch
 from tracer.neighbours.certified.store import CertificateStore
@@ -44,7 +45,7 @@ def proofs_of(store: CertificateStore, seen: Iterable[int]) -> list[Proof]:
     cells = store.cells
     for leaf in seen:
         for light in np.flatnonzero(store.certified).tolist():
-            state, cell = (int(cells.words[leaf]) >> (2 + 2 * light)) & 3, int(leaf)
+            state, cell = int(shadow_mode(cells.words[leaf], light)), int(leaf)
             if state == LIT:
                 found[Proof(cell, light, "lit", ())] = None
             elif state == FULL:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracer.culling.modes import shadow_mode
 from tracer.neighbours.certified.cell_prism import put_cell
 from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, OVERFLOW, SETTLED, TOO_MANY, Cells
 from tracer.neighbours.certified.certify import certify, make_scratch
@@ -161,11 +162,11 @@ def _lists(
 def proved_cells(cells: Cells, cell: NDArray[np.int32], light: int) -> NDArray[np.int32]:
     """The cells (n,) of which the certificates, FULL or LIT, of cells (n,) were proved: these themselves, or such that
     they are parts of; 0 for none."""
-    states = (cells.words[cell].astype(np.int64) >> (2 + 2 * light)) & 3
+    states = shadow_mode(cells.words[cell], light)
     cell = np.where((states == FULL) | (states == LIT), cell, np.int32(0))
     while True:
         parent = cells.parent[cell]
-        whole = ((cells.words[parent].astype(np.int64) >> (2 + 2 * light)) & 3) == states
+        whole = shadow_mode(cells.words[parent], light) == states
         rises = (cell > 0) & (parent > 0) & whole & ((states == LIT) | (cells.lists[cell, light] == NOBODY))
         if not rises.any():
             return cell

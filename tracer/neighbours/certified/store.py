@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracer.culling.dependence import drop_dependent
-from tracer.culling.modes import MAX_CULLED_LIGHTS, words_at
+from tracer.culling.modes import MAX_CULLED_LIGHTS, shadow_mode, words_at
 from tracer.culling.modes import NON_SHADOW as LIT
 from tracer.culling.rest import Changed, Resting, changes, nothing_rests
 from tracer.geometry.boxes import OUTWARDS
@@ -60,8 +60,7 @@ if TYPE_CHECKING:
 BATCH = 4096  # tasks of one call of `certify`, at most
 SHARES, CHUNK = 4, (32, 256)  # of a batch that each thread takes, one at a time; least and most tasks of one
 FEW_TILES = 4  # of a picture: with so many every vector of points makes requests, with twice as many every other
-NOWHERE = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)  # a box that holds nothing
-NOT_RECORDED = np.empty(0, np.int32)  # where nobody wants to know which cells primary hits see
+EMPTY_BOX = np.array([FAR, FAR, FAR, -FAR, -FAR, -FAR], np.float32)
 
 
 class CertificateStore:
@@ -180,7 +179,7 @@ class CertificateStore:
         self._fitted &= ~moved
         if self._are_lamps.any():
             if self._lamp_geometry is None:
-                self._lamp_geometry = LampGeometry(self._world, self.count, self.threads)
+                self._lamp_geometry = LampGeometry(self._world, self.count, self.threads, self._static)
             self._lamp_geometry.update(self._are_lamps, lights, radii, moved, resting)
         fit = ~self._fitted & self.stationary & ~self._are_lamps
         self._static.update_lights(np.flatnonzero(fit).tolist(), lights, radii, self.scale.max_height)
@@ -303,11 +302,12 @@ class CertificateStore:
 
     # --- what is known ----------------------------------------------------------------------------------
 
-    def view(self, tiles: int, requests: Requests, cell: NDArray[np.int32] = NOT_RECORDED) -> CertificateView:
+    def view(self, tiles: int, requests: Requests, cell: NDArray[np.int32]) -> CertificateView:
         """What kernels are given that shade a picture of so many tiles.
 
-        Their requests go to `requests`, a row for each tile, and the cells of primary hits to cell (pixels,) int32.  In
-        small pictures more of the points make requests: each stands for many of a large one."""
+        Their requests go to `requests`, a row for each tile, and the cells of primary hits to cell (pixels,) int32,
+        empty where nobody wants to know.  In small pictures more of the points make requests: each stands for many of a
+        large one."""
         model, cells = self.cost_model, self.cells
         stride = min(model.stride, max(1, tiles // FEW_TILES))
         return CertificateView(
@@ -337,8 +337,8 @@ class CertificateStore:
             places=self.lights,
             radii=self.radii,
             samples=self._samples,
-            within=NOWHERE if geometry is None else geometry.within,
-            unknown=NOWHERE if geometry is None else geometry.unknown,
+            within=EMPTY_BOX if geometry is None else geometry.within,
+            unknown=EMPTY_BOX if geometry is None else geometry.unknown,
             ray_cost=self.cost_model.ray_cost,
             occluders=self.occluders if geometry is None else geometry.occluders,
             any_hit=self._world.placed.any_hit,
@@ -354,7 +354,7 @@ class CertificateStore:
 
         One of STATES, and the numbers of the primitives that it names."""
         number = self.place_of(primitive, point)[3]
-        state = (int(self.cells.words[number]) >> (2 + 2 * light)) & 3 if light < self.count else 0
+        state = int(shadow_mode(self.cells.words[number], light)) if light < self.count else 0
         names = named_by(self.cells, self.naming(number, light) if state == FULL else number, light)
         return STATES[state], tuple(int(name) for name in (() if names is None else names))
 
