@@ -16,8 +16,9 @@ from viewer.state.view_state import ViewState  # noqa: E402
 PAGE = ROOT / "docs" / "settings.md"
 HEAD = """# Settings
 
-Every setting of the window and the command line, as it is declared: `settings` are those of `tracer.Settings`, `draw`
-says how a frame is drawn, and `pace` how the window traces. `make settings` writes this table.
+These are the settings of the tracer (`settings`, in Python `tracer.Settings`), of how frames are drawn (`draw`), of how
+the window traces (`pace`), and of the user (the others). An option sets the same on the [command
+line](command-line.md). `make settings` writes this table from the declarations.
 
 | setting | what it does | values | default | option |
 |---|---|---|---|---|
@@ -30,7 +31,7 @@ def page() -> str:
 
 
 def _row(one: Setting) -> str:
-    default = one.default or "" if one.kind is str else one.text(one.default)
+    default = one.default or one.unset if one.kind is str else one.text(one.default)
     default = "" if default == "changed" else default
     values = one.expected_shown if one.kind in (bool, int, float) or one.choices else ""
     if one.kind is float and one.default == math.inf:

@@ -18,15 +18,15 @@ examples:
   shadowcull check-proofs proofs.json
   shadowcull check-proofs proofs.json --most 500
 
-The exit code is 0 only if all hold that were checked. The checker shares no code with the tracer: all is decided by
-integers. Other programs can be held against it, too: docs/proofs.md tells what is in the file.
+The exit code is 0 only if all checked proofs hold. The checker shares no code with the tracer, and uses integers only.
+It can check proofs of other programs, too: docs/proofs.md describes the file.
 """
 
 
 def parser() -> Parser:
     parser = Parser("check-proofs", "Check proofs of visibility in exact arithmetic.", EPILOG)
     parser.add_argument("proofs", type=Path, metavar="FILE", help="proofs, as `shadowcull prove` writes them")
-    help_ = "how many are checked, evenly chosen (default: all)"
+    help_ = "how many are checked, evenly spread (default: all)"
     parser.add_argument("--most", type=count(1, 2**31 - 1), metavar="N", help=help_)
     return parser
 

@@ -33,9 +33,9 @@ examples:
   shadowcull film kitchen.aff -o flight --bookmarks --fps 30
 
 Every frame is traced whole, and each picture carries how it was made, for `shadowcull check`. Modes are learnt from
-frame to frame. A flight moves evenly: each frame goes on as far as the others, where turning counts as well, and time
-goes on from picture to picture. The video needs PyAV: install shadowcull[video]. An odd width or height of the video
-is made even by repeating its last row or column. Ctrl-C keeps what is done; the exit code is then 130.
+frame to frame. A flight has an even speed, in which turning counts as well, and time goes on from picture to picture.
+The video needs PyAV: install shadowcull[video]. If the width or height is odd, its last column or row is repeated.
+Ctrl-C keeps what is done; the exit code is then 130.
 """
 
 

@@ -49,7 +49,8 @@ def parser() -> Parser:
     add("-o", "--output", type=Path, action="append", default=[], metavar="FILE", help="the card: a .json or a .md")
     help_ = f"where to grade, from the first frame on; may be given several times (default: {' and '.join(STANDARD)})"
     add("--scene", dest="scenes", action="append", default=[], metavar="SCENE", help=help_)
-    add("--frames", type=count(FEWEST, 10_000), default=FRAMES, metavar="N", help=f"of each trial (default: {FRAMES})")
+    help_ = f"frames of each trial, {FEWEST} or more (default: {FRAMES})"
+    add("--frames", type=count(FEWEST, 10_000), default=FRAMES, metavar="N", help=help_)
     add("--size", type=arguments.size, default=(144, 96), metavar="WxH", help="width and height (default: 144x96)")
     add("--no-shrink", action="store_true", help="do not shrink the worst wrong pixel, which may take a while")
     options.add_settings(parser, Settings, "depth", "lamp_radius", "lamp_samples", depth=2)

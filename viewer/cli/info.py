@@ -32,7 +32,7 @@ def parser() -> Parser:
     description = (
         "Say what a scene, or that of a saved picture, holds: primitives, lights, materials, frames, bounds, and "
         "warnings. Of a model without camera and lights it counts what is in the file, lit by two lights, and says "
-        "what the studio adds in which the window and the commands that trace set it."
+        "what the studio adds in the window and in pictures."
     )
     parser = Parser("info", description, EPILOG)
     add_scene(parser)

@@ -33,7 +33,7 @@ def add_picture(parser: Parser) -> None:
     options.add_settings(parser, Settings, "samples")
     help_ = (
         f"how shadow rays are culled: {options.METHODS} (default: {DEFAULT_METHOD}, or the method that a view belongs "
-        f"to: {', '.join(SHOWN_BY.values())})"
+        f"to: {', '.join(dict.fromkeys(SHOWN_BY.values()))})"
     )
     parser.add_argument("--method", type=arguments.method, metavar="METHOD", help=help_)
     group = parser.add_argument_group("what is drawn")
@@ -46,7 +46,7 @@ def add_picture(parser: Parser) -> None:
     add("--view", type=arguments.view, default=DrawOptions(), metavar="VIEW", help=help_)
     options.add_settings(group, DrawOptions, *(one.name for one in DRAWN))
     with_range = ", ".join(view.value for view in View if view.has_range)
-    help_ = f"what has the first and the last colour in the views {with_range} (default: as they come)"
+    help_ = f"what the first and the last colour stand for in the views {with_range} (default: as they come)"
     add("--range", type=arguments.value_range, metavar="LOW:HIGH", help=help_)
     help_ = "where the legend is: 0,0 is the upper left, 1,1 the lower right (default: 0,1)"
     add("--legend-at", type=arguments.place, default=DrawOptions().legend_at, metavar="X,Y", help=help_)

@@ -74,7 +74,7 @@ def parser() -> Parser:
     options.add_history(parser)
     add("--repeat", type=count(0, 1000), default=0, metavar="N", help="then trace the frame itself N times")
     add("--print-command", action="store_true", help="print the whole command for this picture, and trace nothing")
-    help_ = "show the frame and its buffers in tev or HDRView, which is open there"
+    help_ = "show the frame and its buffers in tev or HDRView, which listens there"
     add("--to-tev", type=other_programs.address, metavar="HOST:PORT", help=help_)
     add("--half", action="store_true", help="colours and normals of an .exr with 16 bits, not 32")
     add("--buffers", type=Path, metavar="FILE.npz", help="what was found at each pixel, as arrays; see below")

@@ -96,18 +96,16 @@ same version of Shadowcull. Needs Dask and PyArrow: install shadowcull[sweep].
 
 
 def parser() -> Parser:
-    description = (
-        "Trace a study, scenes by methods by settings by seeds, by several processes, and keep every frame as a row."
-    )
+    description = "Trace all combinations of a study in several processes, and keep every frame as a row."
     parser = Parser("sweep", description, EPILOG)
     add = parser.add_argument
     add("study", type=Path, metavar="STUDY.toml", help="what to trace; see below")
     help_ = "the folder of the results (default: beside the study, STUDY-results)"
     add("-o", "--output", type=Path, metavar="DIR", help=help_)
     who = parser.add_mutually_exclusive_group().add_argument
-    help_ = "so many processes of this machine, with one thread each (default: one on each core)"
+    help_ = "how many processes of this machine work, with one thread each (default: one on each core)"
     who("--workers", type=count(1, 1024), metavar="N", help=help_)
-    help_ = "the workers of a Dask scheduler that runs there, such as tcp://10.0.0.1:8786"
+    help_ = "use the workers of the Dask scheduler at this address, such as tcp://10.0.0.1:8786"
     who("--scheduler", metavar="ADDRESS", help=help_)
     add("--table", action="store_true", help="trace nothing; print the table of what there is")
     add("--anew", action="store_true", help="throw away what there is, and trace all of it")

@@ -178,7 +178,7 @@ class DrawOptions:
     )  # fmt: skip
     tone: Tone = NEUTRAL
     spans: tuple[tuple[View, Span], ...] = setting(
-        (), "Range", "What has the first and the last colour of the map.", option="--range", remembered=False,
+        (), "Range", "What the first and the last colour of the map stand for.", option="--range", remembered=False,
         applies=lambda state: state.draw.has_span, check=_check_spans,
     )  # fmt: skip
     legend: bool = setting(
@@ -199,7 +199,7 @@ class DrawOptions:
     )  # fmt: skip
     mark_wrong: bool = setting(
         True, "Mark wrong pixels",
-        "Draw rings around pixels with wrong shadow answers in Difference and Wipe, by which a lone one is found.",
+        "Draw rings around pixels with wrong shadow answers in Difference and Wipe.",
         option="--no-marks", panel="View", applies=in_views(lambda view: view.records is Record.VERIFY),
     )  # fmt: skip
     clipping: bool = setting(

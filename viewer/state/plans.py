@@ -115,7 +115,7 @@ class HuntPlan(PathPlan):
         low=0.0, high=100.0, slider=(0.0, 1.0), digits=2, option="--radius",
     )  # fmt: skip
     seed: int = setting(1, "Seed", "Seed of the extra views.", low=0, high=2**31 - 1, option="--seed")
-    keep: int = setting(12, "Findings", "How many findings are kept, the worst.", low=1, high=1000, option="--keep")
+    keep: int = setting(12, "Findings", "How many of the worst findings are kept.", low=1, high=1000, option="--keep")
     size: tuple[int, int] = setting(
         (256, 256), "Size", "Size of the pictures: modes are those of a size.", high=LONGEST_RUN_SIDE
     )
