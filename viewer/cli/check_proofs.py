@@ -18,7 +18,7 @@ examples:
   shadowcull check-proofs proofs.json
   shadowcull check-proofs proofs.json --most 500
 
-The exit code is 0 only if all checked proofs hold. The checker shares no code with the tracer, and uses integers only.
+The exit code is 0 only if all checked proofs hold. The checker shares no code with the tracer, and decides by integers.
 It can check proofs of other programs, too: docs/proofs.md describes the file.
 """
 
