@@ -21,7 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TWINE = "twine>=7,<8"
-UV = [sys.executable, "-m", "uv"]
+UV = [sys.executable, "-m", "uv", "--system-certs"]  # as tools/environment.sh does
 _OF_WHEEL = ("shadowcull.py", "tracer/", "viewer/", "shadowcull-")
 _OF_SOURCES = (
     "shadowcull.py", "tracer/", "viewer/", "shaders/", "assets/", "tests/", "tools/", "docs/", ".ci/", ".gitignore",

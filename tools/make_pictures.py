@@ -81,7 +81,6 @@ def film(d: Driver) -> None:
 def still(d: Driver) -> None:
     """The window with a clicked pixel, after some frames from which culling has learnt."""
     _begin(d)
-    d.c.preferences.savings = True
     d.press(*["RightArrow"] * (STILL - 1)).settle()
     d.press("RightArrow").settle()
     d.c.settings.change(samples=SAMPLES)
@@ -94,7 +93,9 @@ def still(d: Driver) -> None:
 
 
 def _begin(d: Driver) -> None:
-    """Whole pictures only, from the first frame on, and the pointer out of the way, as it is drawn, too."""
+    """Whole pictures only, from the first frame on, what culling saves above them, and the pointer out of the way, as
+    it is drawn, too."""
+    d.c.preferences.savings = True
     d.c.session.set_pace(progressive=False, fixed_size=False)
     d.context.mouse_move_to_pos((SIZE[0] - 1.0, SIZE[1] - 1.0))
     d.press("Backspace").settle()  # what pictures in parts have taught is forgotten
