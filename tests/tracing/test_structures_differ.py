@@ -7,12 +7,12 @@ by more than rounding.
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from tests.tracing.exact import Exact, cross, dot, exact, minus
 from tests.tracing.nasty_worlds import nasty_walk
 from tracer.geometry.rays import MISS, ray_batch
 from tracer.geometry.triangle_test import EDGE
@@ -39,23 +39,7 @@ class Crossing(NamedTuple):
         return any(value <= error for value, error in self.inside)
 
 
-def exact(values: np.ndarray) -> list[Fraction]:
-    return [Fraction(float(x)) for x in values]
-
-
-def minus(a: list, b: list) -> list:
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def cross(a: list, b: list) -> list:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a: list, b: list) -> Any:
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def length(a: list) -> float:
+def length(a: Exact) -> float:
     return float(np.linalg.norm([float(x) for x in a]))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from fractions import Fraction
 from functools import partial
 from itertools import product
 from typing import Any, NamedTuple
@@ -14,6 +13,7 @@ import numpy as np
 import pytest
 
 from tests.sweeps import ACCELERATORS, cases
+from tests.tracing.exact import cross, dot, exact, minus
 from tests.tracing.worlds import scene
 from tracer.culling.shadow_testing import LIGHT_MARGIN
 from tracer.geometry.rays import ray_batch
@@ -196,23 +196,12 @@ def claim(triangle: Vectors, light: Hull, receiver: Hull, sure: float, corner_er
 
 def crosses(triangle: Vectors, start: Vectors, end: Vectors) -> bool:
     """Whether a segment crosses the inside of a triangle (9,): exactly, in rational numbers."""
-    a, e1, e2, start, end = (
-        [Fraction(float(x)) for x in v] for v in (triangle[:3], triangle[3:6], triangle[6:], start, end)
-    )
-    d, s = [p - q for p, q in zip(end, start, strict=True)], [p - q for p, q in zip(start, a, strict=True)]
-    n = _cross(e1, e2)
-    u, v, along, t = _dot(d, _cross(e2, s)), _dot(d, _cross(s, e1)), -_dot(d, n), _dot(s, n)
+    a, e1, e2, begin, aim = map(exact, (triangle[:3], triangle[3:6], triangle[6:], start, end))
+    d, s, n = minus(aim, begin), minus(begin, a), cross(e1, e2)
+    u, v, along, t = dot(d, cross(e2, s)), dot(d, cross(s, e1)), -dot(d, n), dot(s, n)
     if along < 0:
         u, v, along, t = -u, -v, -along, -t
     return u > 0 and v > 0 and along - u - v > 0 and 0 < t < along
-
-
-def _cross(a: list, b: list) -> list:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def _dot(a: list, b: list) -> Fraction:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def contradictions(triangle: Vectors, light: Hull, receiver: Hull, claimed: str, rng: np.random.Generator) -> list[str]:

@@ -11,7 +11,7 @@ from tracer.experiments import warmup_frames
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.inspect.path_records import VERDICTS, RayTree
 from tracer.inspect.why_in_words import primitive_in_words
-from tracer.scene.arrays import vector
+from tracer.scene.arrays import Float32, vector
 from tracer.scene.lights import named_light
 from tracer.scene.model import Camera, Scene
 from tracer.util.text import mode_in_words
@@ -174,6 +174,11 @@ def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
     }
 
 
+def difference_of(color: Float32, right: Float32) -> Float32:
+    """(...) how far colours (..., 3) are from the right ones as a screen shows them: 0 to 1, of the worst channel."""
+    return np.abs(np.clip(color, 0.0, 1.0) - np.clip(right, 0.0, 1.0)).max(axis=-1)
+
+
 def counterexample_in(tree: RayTree, scene: Scene) -> Counterexample | None:
     """Read off a pixel's rays, in a verified frame, what is wrong there: of its wrong answers the one that weighs most.
 
@@ -195,7 +200,7 @@ def counterexample_in(tree: RayTree, scene: Scene) -> Counterexample | None:
         camera=frame.camera,
         x=tree.x,
         y=tree.y,
-        difference=float(np.abs(np.clip(color, 0.0, 1.0) - np.clip(right, 0.0, 1.0)).max()),
+        difference=float(difference_of(color, right)),
         color=vector(color),
         reference=vector(right),
         primitive=ray.primitive,

@@ -182,12 +182,11 @@ class Grade(Run[Card]):
 
     def _keep_worst(self, trial: Trial, number: int, none: Frame, frame: Frame) -> None:
         """Keep the worst wrong pixel of a trial's frame where it is the worst so far."""
-        shown, right = np.clip(frame.color, 0.0, 1.0), np.clip(none.color, 0.0, 1.0)
-        off = np.nan_to_num(np.abs(shown - right).max(axis=-1), nan=1.0)
-        off[frame.wrong == 0] = 0.0
+        off = np.nan_to_num(counterexample.difference_of(frame.color, none.color), nan=1.0) * (frame.wrong != 0)
         y, x = map(int, np.unravel_index(int(off.argmax()), off.shape))
         if off[y, x] > self._off:
-            self._off, how = float(off[y, x]), "bright" if shown[y, x].sum() > right[y, x].sum() else "dark"
+            shown, right = np.clip((frame.color[y, x], none.color[y, x]), 0.0, 1.0)
+            self._off, how = float(off[y, x]), "bright" if shown.sum() > right.sum() else "dark"
             where = f"pixel {x}, {y} in frame {number} of {trial}, too {how} by {self._off:.3f} of 1"
             before = tuple(WarmupFrame(time) for time in trial.times[:number])
             settings = replace(self._counted, record_lights=False)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.experiments import counterexample
-from tracer.experiments.counterexample import AROUND, PATH, Counterexample, counterexample_in
+from tracer.experiments.counterexample import AROUND, PATH, Counterexample, counterexample_in, difference_of
 from tracer.experiments.runner import Run
 from tracer.experiments.warmup_frames import WarmupFrame
 from tracer.frame import Frame, Settings
@@ -273,14 +273,10 @@ class _Hunter:
                 self._keep(replace(find, place=place, own_camera=own_camera, **counts))
 
     def _candidates(self, frame: Frame, wrong: NDArray[np.bool_]) -> list[tuple[int, int]]:
-        """The worst wrong pixel of each primitive that a picture shows, the worst first, as x and y, as far as they may
-        be among the worst of all."""
+        """The worst wrong pixel (x, y) of each primitive, worst first, where it may be among the worst of all."""
         rows, columns = np.nonzero(wrong)
-        if not len(rows):
-            return []
         assert frame.reference is not None
-        color, right = (np.clip(picture[rows, columns], 0.0, 1.0) for picture in (frame.color, frame.reference))
-        differences = np.abs(color - right).max(axis=-1)
+        differences = difference_of(frame.color[rows, columns], frame.reference[rows, columns])
         order = np.lexsort((columns, rows, -differences))
         _, first = np.unique(frame.primitive[rows, columns][order], return_index=True)
         finds = self._results.finds
