@@ -60,7 +60,7 @@ class ShadowCounts(RayCounts):
         Those whose answer is wrong, counted with `Settings.verify`. As all these counts, of the first sample of each
         pixel; `FrameStatistics.wrong` is of all.
     passed_over : int
-        Pairs of a point and a light's sample that nobody looked at, as it is proven that the light does not reach any
+        Pairs of a point and a light's sample that nobody looked at, as it is proved that the light does not reach any
         point nearby. They are not among those that are due. Where the light of each is recorded or verified, nothing
         is passed over: such rays are due, and culled.
     """

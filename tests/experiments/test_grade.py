@@ -123,5 +123,5 @@ def test_a_method_of_the_program_is_graded_by_its_name(method: str, scene: Scene
     assert all(row.counted.average_steps > 0.0 and row.timed.speed_up > 0.0 for row in card.rows)
     if method == "certified":
         assert card.right and card.worst is None
-        assert all(row.proven > 1000 and row.timed.memory_bytes > 0 for row in card.rows)
+        assert all(row.proved > 1000 and row.timed.memory_bytes > 0 for row in card.rows)
         assert verdict(card).startswith("Nothing wrong was found, as it claims to be exact: all of ")

@@ -79,6 +79,19 @@ def test_slack_is_how_far_the_light_is_from_planes_through_the_cell_and_an_edge_
     assert tried > 100
 
 
+def test_slack_is_of_no_other_cell_after_cells_were_dropped() -> None:
+    """Those that stay get other numbers, and the frame knows the old ones."""
+    renderer, frame = _traced(_strewn(1, nasty=False), frames=3)
+    store = certificates_of(renderer)
+    assert store is not None and frame.cells is not None
+    before = slack_at_pixels(renderer, frame, 0)
+    number, numbering = store.cells.used[0], store.numbering
+    store.keep_within(0.9 * store.bytes, frame.cells[:18].ravel())
+    assert store.numbering > numbering and number // 2 < store.cells.used[0] < number
+    after = slack_at_pixels(renderer, frame, 0)
+    assert ((after == before) | (after == -1.0)).all() and (after != before).any()
+
+
 def _crossed(triangles: np.ndarray, start: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """(ends, triangles) which segments cross which triangles (t, 9), in double precision."""
     a, e1, e2 = triangles[:, :3], triangles[:, 3:6], triangles[:, 6:]

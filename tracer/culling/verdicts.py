@@ -69,7 +69,7 @@ class CullReason(NamedTuple):
     `named` are the primitives that the answer rests on, and `told` is what more there is to say, in sentences.  Of a
     ray that was traced, `known` is what was known but did not do: a mode by its name, which is the primitive's
     occlusion mode unless it was fully rendered, else its shadow mode; or "candidates"; or the state of a certificate
-    that was not looked up, as "proven full, unused"."""
+    that was not looked up, as "proved full, unused"."""
 
     verdict: Verdict
     named: tuple[int, ...] = ()

@@ -38,17 +38,40 @@ def _finder_for(renderer: Renderer, frame: Frame) -> tuple[SlackFinder, NDArray[
     return method.slack, frame.cells
 
 
+def _places(
+    finder: SlackFinder, frame: Frame, y: NDArray[np.int64], x: NDArray[np.int64]
+) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
+    """The owners of the cells, and u and v, of the points that pixels (n,) hit."""
+    rays, row = pinhole(frame.camera, frame.width, frame.height), finder.store.cells.receivers[frame.primitive[y, x]]
+    row = row.astype(np.float64)
+    way = rays.corner + x[:, None] * np.asarray(rays.column) + y[:, None] * np.asarray(rays.row)
+    way *= frame.depth[y, x, None] / np.linalg.norm(way, axis=1, keepdims=True)
+    eye = np.asarray(rays.origin) - row[:, CORNER : CORNER + 3]
+    u, v = (np.einsum("ij,ij->i", eye + way, row[:, at : at + 3]) for at in (ALONG_U, ALONG_V))
+    below = np.einsum("ij,ij->i", eye, row[:, NORMAL : NORMAL + 3]) < 0.0
+    return (2 * frame.primitive[y, x] + below).astype(np.int32), u, v
+
+
+def _are_within(place: NDArray[np.float32], u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points (n,) are in cells at places (n, 3), give or take a hundredth of a cell."""
+    across, down = ((at - place[:, k]) / place[:, 2] for k, at in enumerate((u, v)))  # upside down ones have size < 0
+    return (across > -0.01) & (down > -0.01) & (across + down < 1.01)
+
+
 def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
     """(h, w) the slack of a light's certificates, in units of the scene; -1 where none says all."""
     finder, cell = _finder_for(renderer, frame)
     cells, slack = finder.store.cells, np.full(frame.primitive.shape, -1.0, np.float32)
     if light < finder.store.count and finder.store.certified[light]:
-        there = (cell > 0) & (cell < cells.used[0])
-        there[there] = cells.owner[cell[there]] >> 1 == frame.primitive[there]  # cells may have other numbers by now
-        which, inverse = np.unique(proved_cells(cells, cell[there], light), return_inverse=True)
+        y, x = np.nonzero((cell > 0) & (cell < cells.used[0]) & (frame.primitive >= 0))
+        owner, u, v = _places(finder, frame, y, x)
+        number = cell[y, x]  # that another cell may have by now
+        still = (cells.owner[number] == owner) & _are_within(cells.place[number], u, v)
+        y, x = y[still], x[still]
+        which, inverse = np.unique(proved_cells(cells, cell[y, x], light), return_inverse=True)
         found = np.full(len(which), -1.0, np.float32)
         found[which > 0] = finder.of_cells(which[which > 0], light, cancelled)
-        slack[there] = found[inverse]
+        slack[y, x] = found[inverse]
     return slack
 
 
@@ -58,20 +81,14 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     finder, cells = _finder_for(renderer, frame)
     if frame.fates is None:
         raise ValueError("the frame did not record what became of its shadow rays")
-    rays = pinhole(frame.camera, frame.width, frame.height)
     certified = finder.store.certified
     traced = (frame.fates[..., : len(certified)] & FATE == Fate.TRACED) & certified
     y, x, light = np.nonzero(traced & (frame.primitive >= 0)[..., None])
-    row = finder.store.cells.receivers[frame.primitive[y, x]]
-    with_cells = row[:, NORMAL : NORMAL + 3].any(axis=1)
-    y, x, light, row = y[with_cells], x[with_cells], light[with_cells], row[with_cells].astype(np.float64)
-    way = rays.corner + x[:, None] * np.asarray(rays.column) + y[:, None] * np.asarray(rays.row)
-    way *= frame.depth[y, x, None] / np.linalg.norm(way, axis=1, keepdims=True)
-    eye = np.asarray(rays.origin) - row[:, CORNER : CORNER + 3]
-    u, v = (np.einsum("ij,ij->i", eye + way, row[:, at : at + 3]) for at in (ALONG_U, ALONG_V))
-    owner = 2 * frame.primitive[y, x] + (np.einsum("ij,ij->i", eye, row[:, NORMAL : NORMAL + 3]) < 0.0)
+    with_cells = finder.store.cells.receivers[frame.primitive[y, x], NORMAL : NORMAL + 3].any(axis=1)
+    y, x, light = y[with_cells], x[with_cells], light[with_cells]
+    owner, u, v = _places(finder, frame, y, x)
     cell = np.clip(cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
-    proved = finder.are_provable(owner.astype(np.int32), u, v, cell, light.astype(np.int32), cancelled)
+    proved = finder.are_provable(owner, u, v, cell, light.astype(np.int32), cancelled)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)
     return regret

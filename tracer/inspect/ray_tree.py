@@ -40,7 +40,7 @@ Cancel = Callable[[], bool] | None
 
 def unused(state: str) -> str:
     """Say what is known where a certificate has this state and nobody has looked it up."""
-    return f"proven {state}, unused"
+    return f"proved {state}, unused"
 
 
 def ray_tree(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = None) -> RayTree:

@@ -45,7 +45,7 @@ SECTIONS = {
     "2.3": "Occlusion testing: the ray of a pixel is tested against what its left and its upper neighbour see. What it "
     "meets there is hidden by something nearer, and so partially occluded; so is what the screen's edge cuts off.",
     "2.4": "Shadow testing: no ray of a fully rendered primitive in FULL_SHADOW is traced, those of one in NON_SHADOW "
-    "ask dynamic objects alone, and every other ray is traced.",
+    "are tested against dynamic objects only, and every other ray is traced.",
     "2.5": "Shadow-mode setting: a blocked ray adds FULL_SHADOW to the mode of its primitive and light, one that "
     "reaches the light NON_SHADOW. Both together are PARTIAL_SHADOW, which stays.",
     "2.6": "Occlusion-mode setting: what no test finds occluded is FULLY_RENDERED, until it covers so many times the "
@@ -55,11 +55,11 @@ SECTIONS = {
 
 MEANING: dict[Verdict, str] = {
     Verdict.AWAY: "The light is behind the surface, so that no shadow ray is due.",
-    Verdict.PASSED_OVER: "The light is proven to be hidden from all that is near the point.",
+    Verdict.PASSED_OVER: "The light is proved to be hidden from all that is near the point.",
     Verdict.FULL_SHADOW: "The primitive is fully rendered, and every shadow ray from it to this light was blocked.",
     Verdict.NON_SHADOW: "The primitive is fully rendered, and nothing static blocked any shadow ray from it to this "
     "light: only objects that move are tested.",
-    Verdict.CERTIFIED_FULL: "The whole cell is proven to be in the shadow of what does not move now.",
+    Verdict.CERTIFIED_FULL: "The whole cell is proved to be in the shadow of what does not move now.",
     Verdict.CERTIFIED_LIT: "Nothing static is between the whole cell and the light: only objects that move are tested.",
     Verdict.CANDIDATES: "Only a few primitives can block the light here: these are tested, and objects that move.",
     Verdict.BEAM: "What is between the lamp and neighbouring points was asked about all of its samples at once.",
@@ -81,7 +81,7 @@ MEANING: dict[Verdict, str] = {
 }
 """What each verdict means."""
 
-_PROVEN = {
+_PROVED = {
     "full": "the light is hidden from the whole cell",
     "lit": "nothing static is in the way",
     "candidates": "only a few primitives can block the light here",
@@ -109,7 +109,7 @@ WHY_TRACED: dict[str, str] = {
     **{
         unused(state): f"Traced: a certificate says that {known}. But Automatic looks no certificates up "
         "here, as it has measured that tracing every ray is quicker."
-        for state, known in _PROVEN.items()
+        for state, known in _PROVED.items()
     },
 }
 """What tracing says where something was known all the same (`CullReason.known`)."""

@@ -1,4 +1,4 @@
-"""Certified cells: shadow rays are culled by what is proven of the cells in which they end (docs/certified-cells.md).
+"""Certified cells: shadow rays are culled by what is proved of the cells in which they end (docs/certified-cells.md).
 
 Before shading, certificates are made for what the primary hits are about to need and what other rays requested in the
 last frame (`tracer.neighbours.certified`).  In shadow testing `find` leads each point to its cell, `choose` answers the

@@ -1,4 +1,4 @@
-"""Certified lights: lights that are proven to shine on nothing in a region are not even looked at.
+"""Certified lights: lights that are proved to shine on nothing in a region are not even looked at.
 
 This is what the method `certified` does where a scene has more lights than a cell's word has room for.  Before shading,
 the regions are certified that primary hits lie in, and those in which rays of the last frame have ended

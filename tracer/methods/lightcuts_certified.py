@@ -1,6 +1,6 @@
-"""Certified lightcuts: cuts of those lights alone that are not proven to be hidden (`tracer.shading.lightcuts.hidden`).
+"""Certified lightcuts: cuts of those lights alone that are not proved to be hidden (`tracer.shading.lightcuts.hidden`).
 
-What is proven is what the method `certified` proves of many lights: that a triangle hides them from a whole region.
+What is proved is what the method `certified` proves of many lights: that a triangle hides them from a whole region.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def shade(data, call, light, count, counts):
 
 
 class CertifiedLightcuts(Lightcuts):
-    """Shades by cuts of the lights that are not proven to be hidden."""
+    """Shades by cuts of the lights that are not proved to be hidden."""
 
     def __init__(self, services: Services) -> None:
         super().__init__(services)

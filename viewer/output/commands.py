@@ -92,7 +92,7 @@ def options(state: ViewState, scene: Scene | None = None) -> list[str]:
     return found + ([] if Path(state.scene).suffix.lower() in AFF_EXTENSIONS else mesh_options(state.meshes))
 
 
-NOT_PLAIN = {"settings.method", "draw.view", "draw.spans", "draw.savings", "draw.caption"}
+NOT_PLAIN = {"settings.method", "draw.view", "draw.spans", "draw.legend_at", "draw.savings", "draw.caption"}
 """Settings whose options take more, or else, than a plain value."""
 
 

@@ -125,7 +125,8 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
 def _scene_word(path: Path) -> str:
     """As commands name a scene, but from the folder of the moment where it is in there: pages are given to others."""
     word, here = commands.scene_word(path), Path.cwd()
-    return str(Path(word).relative_to(here)) if Path(word).is_relative_to(here) else word
+    word = str(Path(word).relative_to(here)) if Path(word).is_relative_to(here) else word
+    return f"./{word}" if word.startswith("-") else word
 
 
 def _options(shown: Shown) -> list[str]:

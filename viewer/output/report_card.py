@@ -44,10 +44,10 @@ def verdict(card: Card) -> str:
 def in_words(card: Card) -> list[str]:
     """Say in a sentence each what the table does not."""
     said = [verdict(card)]
-    counts = ((row.answers, row.proven, row.refuted) for row in card.rows)
-    answers, proven, refuted = map(sum, zip(*counts, strict=True))
+    counts = ((row.answers, row.proved, row.refuted) for row in card.rows)
+    answers, proved, refuted = map(sum, zip(*counts, strict=True))
     if answers:
-        share = f"prove {percent(proven, answers)} of its answers at first hits"
+        share = f"prove {percent(proved, answers)} of its answers at first hits"
         said.append(f"Certificates of {PROVES} {share}, and refute {f'{refuted:,}' if refuted else 'none'}.")
     if card.other_counters:
         measured = " (it goes by measured times)" if Method.parse(card.method).adaptive else ""

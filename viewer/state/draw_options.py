@@ -187,7 +187,7 @@ class DrawOptions:
     )  # fmt: skip
     legend_at: tuple[float, float] = setting(
         (0.0, 1.0), "Place of the legend", "Where the legend is in the picture: 0,0 is the upper left.",
-        check=_check_place,
+        option="--legend-at", check=_check_place,
     )  # fmt: skip
     outlines: bool = setting(
         False, "Outlines", "Draw the borders between primitives.", option="--outlines", panel="View"

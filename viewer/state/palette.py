@@ -52,7 +52,7 @@ class Class(NamedTuple):
 
 
 class Certificate(IntEnum):
-    """What is proven of a cell and a light, in the place that a shadow mode has in a word."""
+    """What is proved of a cell and a light, in the place that a shadow mode has in a word."""
 
     NONE = 0
     FULL = 1
@@ -88,7 +88,7 @@ BLOCKED, LIT, PARTLY_LIT = (
 CERTIFICATES = {
     found: Class(found.name.lower(), color, meaning)
     for found, color, meaning in (
-        (Certificate.NONE, GREY, "nothing is proven, or the light is behind it: its shadow rays are traced"),
+        (Certificate.NONE, GREY, "nothing is proved, or the light is behind it: its shadow rays are traced"),
         (Certificate.FULL, BLOCKED, "all of it is in the shadow of static geometry: its shadow rays are culled"),
         (Certificate.LIT, LIT, "nothing static is between it and the light: tested against dynamic objects only"),
         (

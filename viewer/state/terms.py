@@ -38,7 +38,7 @@ MEANINGS = {
     CANDIDATES_ONLY: "tested against a few primitives and dynamic objects instead of the whole scene",
     CACHE_HITS: "blocked by the primitive that blocked a ray there before",
     TRACED: "nothing was known: traced through the whole scene",
-    PASSED_OVER: "samples of lights, at all points, that are proven not to reach them: not even looked at, and not due",
+    PASSED_OVER: "samples of lights, at all points, that are proved not to reach them: not even looked at, and not due",
     BUILT: "of the tree, which is built where rays arrive: primitives in nodes that are built",
     WRONG: "shadow rays for which culling and tracing disagree, in all samples so far",
     WRONG_PIXELS: "with a wrong answer to any light, at any bounce, in any sample so far",

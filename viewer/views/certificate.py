@@ -21,7 +21,7 @@ class Certificates(ClassView):
     label = "Certificates"
     key = "0"
     help = (
-        "What is proven for each cell and the chosen light; lines are the borders of cells. Each frame proves more: T "
+        "What is proved for each cell and the chosen light; lines are the borders of cells. Each frame proves more: T "
         "traces one more, K keeps tracing."
     )
     of_light = True

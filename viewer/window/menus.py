@@ -39,7 +39,8 @@ def button(ui: Ui, name: str, icon: str, words: str = "", columns: int = 1, widt
 
 
 def handle_keys(ui: Ui) -> None:
-    """Run the commands whose keys were just pressed, unless a dialog is up, or the user types and may mean the text."""
+    """Run the commands whose keys were just pressed, or say why they cannot be run, unless a dialog is up, or the user
+    types and may mean the text."""
     ui.keyboard.update()
     modifiers = ui.keyboard.update_modifiers(ui.keymap)
     typing = imgui.get_io().want_text_input
@@ -51,8 +52,12 @@ def handle_keys(ui: Ui) -> None:
         return
     for command in ui.commands:
         pressed = [key for key in ui.keymap.of(command.name) if ui.keyboard.is_pressed(key, modifiers, command.repeats)]
-        if pressed and (not typing or any(map(works_while_typing, pressed))) and not command.why_not:
+        if not pressed or (typing and not any(map(works_while_typing, pressed))):
+            continue
+        if not command.why_not:
             run(ui, command)
+        elif "Escape" not in pressed:  # which many press only to be sure
+            ui.controller.notices.say(f"{command.label or command.name}: {command.why_not}")
 
 
 def close_newest(ui: Ui) -> bool:

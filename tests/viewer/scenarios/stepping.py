@@ -12,6 +12,7 @@ def stepping(d: Driver) -> None:
     s = d.c.stepping
     d.fix_resolution(160, 120)
     d.change(method="paper").press("F6", "F8")
+    d.expect("Step to the next line: click a pixel")
     d.expect("Click a pixel: the paper's text then runs")
     d.pick(*place_of(d.c, lit=False))
     d.wait(lambda: s.now is not None, "the steps", 20.0)

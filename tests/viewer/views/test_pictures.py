@@ -46,9 +46,9 @@ def classes_of(f: Frame, view: View, light: int) -> dict[str, NDArray[np.bool_]]
                  for sure, after in ((True, ""), (False, ", untrusted"))}  # fmt: skip
         return culls | {"init": (shadow == 0) & ~moves, "partial shadow": (shadow == 3) & ~moves, "dynamic": moves}
     if view is View.CERTIFICATE:
-        proven = (f.certificates >> (2 + 2 * light)) & 3
+        proved = (f.certificates >> (2 + 2 * light)) & 3
         names = enumerate(("none", "full", "lit", "candidates"))
-        return {name: (proven == number) & ~moves for number, name in names} | {"dynamic": moves}
+        return {name: (proved == number) & ~moves for number, name in names} | {"dynamic": moves}
     if view is View.FATE:
         return {one.name: f.fate(light) == fate for fate, one in FATES.items()}
     if view is View.MOVING_SHADOW:

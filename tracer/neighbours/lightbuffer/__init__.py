@@ -1,4 +1,4 @@
-"""The light buffer: what each light sees in each direction, proven with the roundings of float32.
+"""The light buffer: what each light sees in each direction, proved with the roundings of float32.
 
 A cube of cells stands around a light (`cube`).  Faces are divided (`divide`) by the functions of what may be seen there
 (`items`), and what is then known of cells is kept (`cubes`).  Rays are looked up (`lookup`), and tested

@@ -1,4 +1,4 @@
-"""The tree of lights as a block of points sees it: without those that are proven to be hidden from all of its points.
+"""The tree of lights as a block of points sees it: without those that are proved to be hidden from all of its points.
 
 The bound of Lightcuts takes all lights of a cluster to be visible, as nothing is known about them.  Here it is known of
 some that they are not, from the regions that the points lie in (`tracer.neighbours.regions`): they are left out of
