@@ -176,10 +176,8 @@ def _numbers(row: Any, count: int) -> tuple[float, ...]:
 
 
 def _of(things: list, number: Any) -> Any:
-    """The thing of a number; raises IndexError or TypeError for what is none."""
-    if type(number) is not int:
-        raise TypeError(number)
-    if number < 0:
+    """The thing of a number; raises IndexError for what is none."""
+    if type(number) is not int or number < 0:
         raise IndexError(number)
     return things[number]
 
