@@ -80,11 +80,6 @@ def frame_of(example: Counterexample, scene: Scene) -> str:
     return f"{number}" if example.place == PATH else f"near {number}"
 
 
-def verdict_of(example: Counterexample) -> str:
-    """Return the mode that culling goes by, such as "non-shadow"."""
-    return mode_in_words(example.verdict)
-
-
 def taught_by(example: Counterexample, scene: Scene) -> str:
     """Return the frame that taught the mode; "" where that is not known."""
     if example.taught_time is None:
@@ -111,7 +106,7 @@ def in_words(example: Counterexample, scene: Scene) -> list[str]:
         f"Pixel {example.x}, {example.y} is too {'bright' if brighter else 'dark'}, by {example.difference:.3f} of 1.",
         f"It shows {primitive_in_words(scene, example.primitive)}{seen}.",
     ]
-    known, light = verdict_of(example), light_of(example, scene)
+    known, light = mode_in_words(example.verdict), light_of(example, scene)
     if example.lit and example.blocker >= 0:
         by = "itself" if example.blocker == example.primitive else primitive_in_words(scene, example.blocker)
         first = "the first is" if example.more_lights else "is"

@@ -289,9 +289,8 @@ class Shrink(Run[Shrunk]):
         if Method.parse(settings.method).uses_cells:
             area = static_area(scene)
             for smaller in self._until_all_is_needed(now, lambda scene: with_area(scene, area), cancel):
-                now = smaller
-                yield replace(now, scene=with_area(now.scene, area))
-            now = replace(now, scene=with_area(now.scene, area))
+                now = replace(smaller, scene=with_area(smaller.scene, area))
+                yield now
         yield from self._until_all_is_needed(now, lambda scene: scene, cancel)
 
     def _until_all_is_needed(self, now: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:

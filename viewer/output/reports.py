@@ -192,7 +192,7 @@ def findings(scene: Scene, finds: Sequence[Counterexample]) -> tuple[Column[Coun
         Column("light", "light whose answer is wrong (+ others that are wrong in the same way)", light),
         Column("primitive", "primitive at which the light is wrong: number and object",
                lambda find: printable(counterexample.primitive_of(find, scene)), text=True),
-        Column("culled by", "mode that culling goes by", counterexample.verdict_of, text=True),
+        Column("culled by", "mode that culling goes by", lambda find: mode_in_words(find.verdict), text=True),
         Column("traced", "what tracing the shadow ray says", lambda find: "blocked" if find.lit else "lit", text=True),
         Column("learnt", "what taught the mode", lambda find: counterexample.taught_by(find, scene), text=True),
         Column("wrong pixels", "wrong pixels of its picture", lambda find: f"{find.pixels:,}"),
