@@ -122,7 +122,7 @@ def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | N
 
 
 def _failed_rule(scene: Scene, find: Counterexample, unit: int, renderer: Renderer, frame: Frame) -> str:
-    verdict = next(one for one in Verdict if one.value == find.verdict)
+    verdict = Verdict(find.verdict)
     method = title_of(frame.settings.method)
     if verdict not in (Verdict.FULL_SHADOW, Verdict.NON_SHADOW) or find.taught < 0:
         return f"This is no rule of the paper, but {method}'s own answer. {MEANING[verdict]}"
@@ -244,8 +244,8 @@ def _parts(kind: str, scene: Scene, wrong: WrongPixel, traced: Callable[[Scene],
     if kind == "primitives":
         return list(primitives[:, None])
     numbers = thing_numbers(scene)[primitives]
-    _, nearest = np.unique(numbers[::-1], return_index=True)
-    return [primitives[numbers == numbers[::-1][first]] for first in -np.sort(-nearest)]
+    nearest_first = dict.fromkeys(numbers[::-1].tolist())
+    return [primitives[numbers == number] for number in reversed(nearest_first)]
 
 
 def _only(kind: str, scene: Scene, wrong: WrongPixel, kept: list[Any]) -> tuple[Scene, WrongPixel]:

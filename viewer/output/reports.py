@@ -191,7 +191,7 @@ def findings(scene: Scene, finds: Sequence[Counterexample]) -> tuple[Column[Coun
                lambda find: counterexample.frame_of(find, scene)),
         Column("light", "light whose answer is wrong (+ others that are wrong in the same way)", light),
         Column("primitive", "primitive at which the light is wrong: number and object",
-               lambda find: printable(counterexample.primitive_of(find, scene)), text=True),
+               lambda find: printable(f"{find.primitive} of {scene.name_of(find.primitive)}"), text=True),
         Column("culled by", "mode that culling goes by", lambda find: mode_in_words(find.verdict), text=True),
         Column("traced", "what tracing the shadow ray says", lambda find: "blocked" if find.lit else "lit", text=True),
         Column("learnt", "what taught the mode", lambda find: counterexample.taught_by(find, scene), text=True),
