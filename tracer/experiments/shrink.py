@@ -122,7 +122,7 @@ def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | N
 
 
 def _failed_rule(scene: Scene, find: Counterexample, unit: int, renderer: Renderer, frame: Frame) -> str:
-    verdict = Verdict(find.verdict)
+    verdict = next(one for one in Verdict if one.value == find.verdict)
     method = title_of(frame.settings.method)
     if verdict not in (Verdict.FULL_SHADOW, Verdict.NON_SHADOW) or find.taught < 0:
         return f"This is no rule of the paper, but {method}'s own answer. {MEANING[verdict]}"
