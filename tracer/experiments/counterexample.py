@@ -80,27 +80,11 @@ def frame_of(example: Counterexample, scene: Scene) -> str:
     return f"{number}" if example.place == PATH else f"near {number}"
 
 
-def verdict_of(example: Counterexample) -> str:
-    """Return the mode that culling goes by, such as "non-shadow"."""
-    return mode_in_words(example.verdict)
-
-
 def taught_by(example: Counterexample, scene: Scene) -> str:
     """Return the frame that taught the mode; "" where that is not known."""
     if example.taught_time is None:
         return ""
     return f"frame {frame_number(scene, example.taught_time)}" if scene.frames > 1 else f"picture {example.taught + 1}"
-
-
-def light_of(example: Counterexample, scene: Scene) -> str:
-    """Return the light whose answer is wrong, and how many others are wrong in the same way."""
-    more = f" and {example.more_lights} more" if example.more_lights else ""
-    return f"{named_light(scene.lights, example.light)}{more}"
-
-
-def primitive_of(example: Counterexample, scene: Scene) -> str:
-    """Return the primitive by its number and its object."""
-    return f"{example.primitive} of {scene.name_of(example.primitive)}"
 
 
 def in_words(example: Counterexample, scene: Scene) -> list[str]:
@@ -111,7 +95,8 @@ def in_words(example: Counterexample, scene: Scene) -> list[str]:
         f"Pixel {example.x}, {example.y} is too {'bright' if brighter else 'dark'}, by {example.difference:.3f} of 1.",
         f"It shows {primitive_in_words(scene, example.primitive)}{seen}.",
     ]
-    known, light = verdict_of(example), light_of(example, scene)
+    more = f" and {example.more_lights} more" if example.more_lights else ""
+    known, light = mode_in_words(example.verdict), f"{named_light(scene.lights, example.light)}{more}"
     if example.lit and example.blocker >= 0:
         by = "itself" if example.blocker == example.primitive else primitive_in_words(scene, example.blocker)
         first = "the first is" if example.more_lights else "is"

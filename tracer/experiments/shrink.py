@@ -244,8 +244,8 @@ def _parts(kind: str, scene: Scene, wrong: WrongPixel, traced: Callable[[Scene],
     if kind == "primitives":
         return list(primitives[:, None])
     numbers = thing_numbers(scene)[primitives]
-    _, nearest = np.unique(numbers[::-1], return_index=True)
-    return [primitives[numbers == numbers[::-1][first]] for first in -np.sort(-nearest)]
+    nearest_first = dict.fromkeys(numbers[::-1].tolist())
+    return [primitives[numbers == number] for number in reversed(nearest_first)]
 
 
 def _only(kind: str, scene: Scene, wrong: WrongPixel, kept: list[Any]) -> tuple[Scene, WrongPixel]:
@@ -289,9 +289,8 @@ class Shrink(Run[Shrunk]):
         if Method.parse(settings.method).uses_cells:
             area = static_area(scene)
             for smaller in self._until_all_is_needed(now, lambda scene: with_area(scene, area), cancel):
-                now = smaller
-                yield replace(now, scene=with_area(now.scene, area))
-            now = replace(now, scene=with_area(now.scene, area))
+                now = replace(smaller, scene=with_area(smaller.scene, area))
+                yield now
         yield from self._until_all_is_needed(now, lambda scene: scene, cancel)
 
     def _until_all_is_needed(self, now: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:

@@ -233,10 +233,8 @@ class _Run:
 
     def _join_others(self, section: str, function: Any) -> None:
         """Note at the head of a function that what other pixels have found counts from here on."""
-        line, note = (
-            function.py_func.__code__.co_firstlineno + 1,
-            "What other pixels have found is included from here on.",
-        )
+        line = function.py_func.__code__.co_firstlineno + 1
+        note = "What other pixels have found is included from here on."
         self._steps.append(Step(Part(section), line, primitives=tuple(self._concerned), note=note))
 
     def _test_shadows(self) -> None:
@@ -307,9 +305,8 @@ def _in_order(tree: RayTree, parent: int) -> Iterator[int]:
 
 def _spoken_of(names: Mapping[str, Any]) -> tuple[tuple[Pixel, ...], tuple[int, ...]]:
     """The pixels and primitives that local names stand for."""
-    pixels = [
-        (names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names and min(names[x], names[y]) >= 0
-    ]
+    places = [(names[x], names[y]) for x, y in (("x", "y"), ("rx", "ry")) if y in names]
+    pixels = [place for place in places if min(place) >= 0]
     primitives = [names[name] for name in _PRIMITIVES if name in names]
     primitives += [names["work"].primitive[y, x] for x, y in pixels[1:]]
     return tuple(pixels), tuple(int(one) for one in primitives if one != MISS)

@@ -149,7 +149,7 @@ def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[st
         "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
         "traced": _deflated(frame.cost, np.int32),
         "due": _deflated(frame.due_rays, np.int32),
-        "saved": _deflated(frame.saved, np.int32),
+        "untraced": _deflated(frame.saved, np.int32),
         "wrong": _deflated(frame.wrong, np.int32),
     }
 

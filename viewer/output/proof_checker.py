@@ -100,14 +100,15 @@ class Checker:
         pieces: list[list] = [[tuple(Fraction(int(j == k)) for j in range(3)) for k in range(3)]]
         for triangle in blockers:
             functions = _functions(light, ends, *map(self._exact, triangle))
+            if not functions:
+                continue
             left = []
-            for begun in pieces if functions else []:
-                piece = begun
+            for inside in pieces:
                 for f in functions:  # what lies outside of one of them is left
-                    left.append(_cut(piece, [-x for x in f]))
-                    piece = _cut(piece, f)
-            pieces = [some for some in left if _area(some) > 0] if functions else pieces
-        return Answer(not pieces, "" if not pieces else "a part of it is not hidden by the triangles that it names")
+                    left.append(_cut(inside, [-x for x in f]))
+                    inside = _cut(inside, f)
+            pieces = [some for some in left if _area(some) > 0]
+        return Answer(False, "a part of it is not hidden by the triangles that it names") if pieces else Answer(True)
 
     def _check_lit(self, start: Point, corners: list) -> Answer:
         shaft = np.array([start, *corners])
@@ -175,10 +176,8 @@ def _numbers(row: Any, count: int) -> tuple[float, ...]:
 
 
 def _of(things: list, number: Any) -> Any:
-    """The thing of a number; raises IndexError or TypeError for what is none."""
-    if type(number) is not int:
-        raise TypeError(number)
-    if number < 0:
+    """The thing of a number; raises IndexError for what is none."""
+    if type(number) is not int or number < 0:
         raise IndexError(number)
     return things[number]
 

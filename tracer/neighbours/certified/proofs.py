@@ -43,14 +43,13 @@ def proofs_of(store: CertificateStore, seen: Iterable[int]) -> list[Proof]:
     """What is certified of cells, and of the cells that they are parts of where it was proved of these."""
     found: dict[Proof, None] = {}
     cells = store.cells
-    for leaf in seen:
+    for leaf in map(int, seen):
         for light in np.flatnonzero(store.certified).tolist():
-            state, cell = int(shadow_mode(cells.words[leaf], light)), int(leaf)
+            state = int(shadow_mode(cells.words[leaf], light))
             if state == LIT:
-                found[Proof(cell, light, "lit", ())] = None
-            elif state == FULL:
-                cell = store.naming(cell, light)
-                names = named_by(cells, cell, light) if cell else None
+                found[Proof(leaf, light, "lit", ())] = None
+            elif state == FULL and (cell := store.naming(leaf, light)):
+                names = named_by(cells, cell, light)
                 if names is not None and len(names):
                     found[Proof(cell, light, "full", tuple(names.tolist()))] = None
     return list(found)
@@ -61,17 +60,13 @@ def as_json(store: CertificateStore, seen: Iterable[int], triangles: int) -> dic
 
     The first `triangles` of the primitives are triangles: of the others, and of what moves, only the boxes count, and
     these are empty for what moves."""
-    proofs = proofs_of(store, seen)
-    numbers = list(dict.fromkeys(proof.cell for proof in proofs))
-    place = {cell: k for k, cell in enumerate(numbers)}
+    place: dict[int, int] = {}  # of each cell among those that are written
+    proofs = [proof._asdict() | {"cell": place.setdefault(proof.cell, len(place))} for proof in proofs_of(store, seen)]
     rows = store.occluders.rows.astype(np.float64)
     return {
         "lights": store.lights.astype(np.float64).tolist(),
         "triangles": rows[:triangles, :9].tolist(),
         "boxes": rows[triangles:, BOX : BOX + 6].tolist(),
-        "cells": [prism_of(store, cell).tolist() for cell in numbers],
-        "proofs": [
-            {"cell": place[proof.cell], "light": proof.light, "verdict": proof.verdict, "by": list(proof.by)}
-            for proof in proofs
-        ],
+        "cells": [prism_of(store, cell).tolist() for cell in place],
+        "proofs": proofs,
     }
