@@ -148,7 +148,7 @@ def test_words_say_what_is_wrong_and_true(world: tracer.World, found: Results) -
     for find in found.finds:
         text = " ".join(counterexample.in_words(find, scene))
         assert f"Pixel {find.x}, {find.y} is too " in text and f" {find.primitive} of " in text
-        assert ("but is blocked by" in text or "but the first is blocked by" in text) == find.lit
+        assert ("but it is blocked by" in text or "but the first is blocked by" in text) == find.lit
         assert ("nothing is in" in text) != find.lit
         crop = Crop.around((find.x, find.y), found.size)
         assert 0 <= find.x - crop.x < crop.width and 0 <= find.y - crop.y < crop.height

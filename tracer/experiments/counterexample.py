@@ -99,7 +99,7 @@ def in_words(example: Counterexample, scene: Scene) -> list[str]:
     known, light = mode_in_words(example.verdict), f"{named_light(scene.lights, example.light)}{more}"
     if example.lit and example.blocker >= 0:
         by = "itself" if example.blocker == example.primitive else primitive_in_words(scene, example.blocker)
-        first = "the first is" if example.more_lights else "is"
+        first = "the first is" if example.more_lights else "it is"
         said.append(f"The method takes it to be lit by {light} ({known}), but {first} blocked by {by}.")
     else:
         said.append(f"The method takes it to be in the shadow of {light} ({known}), but nothing is in the way.")

@@ -58,8 +58,8 @@ def run(given: Namespace) -> int:
             if answer.holds:
                 held[proof[2]] += 1
             if not answer.holds:
-                named = f"cell {proof[0]}, light {proof[1]}, {proof[2]}"
-                failed.append(f"proof {number} ({ascii(named)[1:61]}): {answer.why}")
+                named = ascii(f"cell {proof[0]}, light {proof[1]}, {proof[2]}")[1:-1]
+                failed.append(f"proof {number} ({named[:60]}): {answer.why}")
     for line in failed[:SHOWN]:
         print(line)
     if len(failed) > SHOWN:

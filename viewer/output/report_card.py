@@ -19,7 +19,7 @@ COLUMNS: tuple[Column[Row], ...] = (
     Column("tests saved", "intersection tests saved, there", lambda row: saved(row.counted.average_tests)),
     Column("speed-up", "over none, frame by frame in turn, in the fast tree on one thread",
            lambda row: SPEED_UP.cell(row.timed)),
-    Column("memory", "what the method held at most",
+    Column("memory", "what the method held at most, besides modes",
            lambda row: memory(row.timed.memory_bytes) if row.timed.memory_bytes else "none"),
 )  # fmt: skip
 
