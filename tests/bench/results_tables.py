@@ -22,6 +22,11 @@ KINDS = {
     "shadow": "shadow, from the light",
     "mirror": "mirror",
     "incoherent": "incoherent",
+    "hemisphere": "any hits, over the hemisphere",
+    "random order": "any hits of one light, in random order",
+    "left at 0": "any hits left by culling, at primary hits",
+    "left at 1": "…, at the first bounce",
+    "left at 2": "…, at the second bounce",
 }
 
 
