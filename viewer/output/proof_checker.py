@@ -78,7 +78,8 @@ class Checker:
         """Check a proof."""
         cell, light, verdict, by = proof
         lights, triangles, cells, _ = map(len, self._exact)
-        named = [(cell, cells), (light, lights), *((k, triangles) for k in (by if isinstance(by, list) else [None]))]
+        by = list(by) if isinstance(by, list | tuple) else [-1]
+        named = [(cell, cells), (light, lights), *((k, triangles) for k in by)]
         if not all(type(number) is int and 0 <= number < count for number, count in named):
             return Answer(False, "it names what is not in the file")
         exact = self._exact.shaft(light, cell)
