@@ -78,7 +78,7 @@ def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Can
 def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None) -> NDArray[np.int32]:
     """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
     `record_fates`."""
-    finder, cells = _finder_for(renderer, frame)
+    finder, _ = _finder_for(renderer, frame)
     if frame.fates is None:
         raise ValueError("the frame did not record what became of its shadow rays")
     certified = finder.store.certified
@@ -87,8 +87,7 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     with_cells = finder.store.cells.receivers[frame.primitive[y, x], NORMAL : NORMAL + 3].any(axis=1)
     y, x, light = y[with_cells], x[with_cells], light[with_cells]
     owner, u, v = _places(finder, frame, y, x)
-    cell = np.clip(cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
-    proved = finder.are_provable(owner, u, v, cell, light.astype(np.int32), cancelled)
+    proved = finder.are_provable(owner, u, v, light.astype(np.int32), cancelled)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)
     return regret
