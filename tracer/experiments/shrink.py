@@ -7,7 +7,7 @@ still is wrong, and too bright or too dark as before.  That goes on until leavin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.editing.edits import NEVER as HIDDEN
-from tracer.editing.edits import subset
+from tracer.editing.edits import joined, subset
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import VISIBLE, History, find_at, repeatable, trace_before, wrong_in
 from tracer.experiments.runner import Run, never
@@ -30,7 +30,7 @@ from tracer.renderer import Renderer
 from tracer.scene.aff_writer import as_word
 from tracer.scene.bounds import ball_of, bounds
 from tracer.scene.lights import named_light
-from tracer.scene.model import Camera, Scene, Triangles
+from tracer.scene.model import Camera, Scene, SceneObject, Triangles, empty_quadrics
 from tracer.scene.things import held_by, thing_numbers
 
 Cancel = Callable[[], bool]
@@ -198,13 +198,8 @@ def with_area(scene: Scene, area: float) -> Scene:
     corners = (np.add(middle, (_FAR * radius, 0.0, 0.0)) + edges)[None].astype(np.float32)
     normals = np.tile(np.array([0.0, 0.0, 1.0], np.float32), (1, 3, 1))
     number = np.zeros(1, np.int32)
-    both = static.triangles, Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
-    triangles = Triangles(**{f.name: np.concatenate([getattr(t, f.name) for t in both]) for f in fields(Triangles)})
-    parts, part_of = static.parts, static.part_of
-    if part_of is not None:
-        part_of = np.insert(part_of, len(static.triangles), len(parts)).astype(np.int32)
-        parts = (*parts, "area_left_out")
-    static = replace(static, triangles=triangles, parts=parts, part_of=part_of)
+    triangle = Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
+    static = joined(static, SceneObject("", triangle, empty_quadrics()), "area_left_out")
     return replace(scene, objects=(static, *scene.objects[1:]))
 
 

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.frame import Frame, counters
-from tracer.geometry.camera import pinhole
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
+from tracer.inspect.projection import seen_at
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.method import Method
 from tracer.scene.lights import light_in_words, named_light
@@ -158,12 +158,9 @@ def blockers(frame: Frame, world: World, lights: NDArray[np.float64], light: int
     """(h, w) the first primitive from the middle of one of lights (l, 3) towards what each pixel shows; -1 where the
     light gets there, or is not due."""
     assert frame.asked is not None and frame.reached is not None
-    view = pinhole(frame.camera, frame.width, frame.height)
     y, x = np.nonzero((frame.primitive >= 0) & (frame.asked[..., light] > 0) & (frame.reached[..., light] == 0))
-    ways = view.corner + x[:, None] * view.column + y[:, None] * view.row
-    seen = view.origin + frame.depth[y, x][:, None] * ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    start = lights[light].astype(np.float32)
-    rays = ray_batch(np.repeat(start[None], len(seen), 0), seen - start, _BETWEEN, 1.0 - _BETWEEN)
+    starts = np.repeat(lights[light : light + 1], len(x), 0)
+    rays = ray_batch(starts, seen_at(frame, x, y) - starts, _BETWEEN, 1.0 - _BETWEEN)
     found = np.full(frame.primitive.shape, -1, np.int32)
     found[y, x] = world.closest_hits(rays).primitive
     return found
