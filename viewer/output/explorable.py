@@ -117,7 +117,7 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
         "blockers": [_deflated(blocker, np.int32) for blocker in in_the_way],
         "classes": {"occlusion": _classes(OCCLUSION), "shadow": _classes(SHADOW), "fate": _classes(FATES)},
         "away": int(Fate.FACES_AWAY),
-        "colors": _deflated(np.round(255 * color_map()), np.uint8),
+        "colors": np.round(255 * color_map()).astype(int).tolist(),
         "methods": [],
     }
 
@@ -143,7 +143,7 @@ def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[st
         "name": name,
         "title": Method.parse(name).title,
         "counts": counts,
-        "picture": f"data:image/png;base64,{base64.b64encode(frame._repr_png_()).decode()}",
+        "pixels": _deflated(frame.pixels, np.uint8),
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
         "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in lights] if of_modes else [],
         "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
