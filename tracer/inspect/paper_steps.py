@@ -129,9 +129,8 @@ def paper_steps(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Can
     if len(work.first):
         raise ValueError(f"{title} keeps modes of cells, and the text speaks of primitives, as the method paper does")
     for lamp in np.flatnonzero(np.diff(work.shading.lamps.first) > 1).tolist():
-        raise ValueError(
-            f"the text knows points of light, and {named_light(renderer.scene.lights, lamp)} has several samples"
-        )
+        name = named_light(renderer.scene.lights, lamp)
+        raise ValueError(f"the text knows points of light, and {name} has several samples")
     return _Run(renderer, frame, x, y, cancelled).steps()
 
 

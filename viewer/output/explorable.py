@@ -89,9 +89,8 @@ def page_data(shown: Shown, world: World) -> dict[str, Any]:
     before = f", with what {several(shown.warmed, 'earlier frame')} taught" if shown.warmed else ""
     words = ["shadowcull", "figure", _scene_word(scene.path), "-o", "figure.html"]
     data = _about(frame, scene, in_the_way, f"{scene.path.name}, frame {number}{before}")
-    data["caption"] = shown.comparison.words or state.draw.caption
+    data["caption"], data["view"] = shown.comparison.words or state.draw.caption, state.draw.view.value
     data["command"] = shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)])
-    data["view"] = state.draw.view.value
     for name in dict.fromkeys(["none", *shown.frames]):
         one = shown.frames.get(name, frame)
         counts = Shown(scene, state, shown.comparison, {name: one}, frame).counts(name)
@@ -104,13 +103,9 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
     lights, left_out = min(frame.lights, MOST_LIGHTS), max(frame.lights - MOST_LIGHTS, 0)
     seen = [int(k) for k in np.unique([frame.primitive, *in_the_way]) if k >= 0]
     return {
-        "title": title,
-        "caption": "",
-        "command": "",
+        "title": title, "caption": "", "command": "", "view": "color", "methods": [],
         "note": f"{several(left_out, 'further light')} left out" if left_out else "",
-        "view": "color",
-        "width": frame.width,
-        "height": frame.height,
+        "width": frame.width, "height": frame.height,
         "lights": [named_light(scene.lights, k) if scene else light_in_words(k, "") for k in range(lights)],
         "primitives": {k: primitive_in_words(scene, k) if scene else f"primitive {k}" for k in seen},
         "primitive": _deflated(frame.primitive, np.int32),
@@ -118,8 +113,7 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
         "classes": {"occlusion": _classes(OCCLUSION), "shadow": _classes(SHADOW), "fate": _classes(FATES)},
         "away": int(Fate.FACES_AWAY),
         "colors": np.round(255 * color_map()).astype(int).tolist(),
-        "methods": [],
-    }
+    }  # fmt: skip
 
 
 def _scene_word(path: Path) -> str:
@@ -140,18 +134,14 @@ def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[st
     """What the page is told of a method."""
     lights, of_modes = range(min(frame.lights, MOST_LIGHTS)), frame.settings.keeps_modes
     return {
-        "name": name,
-        "title": Method.parse(name).title,
-        "counts": counts,
+        "name": name, "title": Method.parse(name).title, "counts": counts,
         "pixels": _deflated(frame.pixels, np.uint8),
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
         "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in lights] if of_modes else [],
         "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
-        "traced": _deflated(frame.cost, np.int32),
-        "due": _deflated(frame.due_rays, np.int32),
-        "untraced": _deflated(frame.saved, np.int32),
-        "wrong": _deflated(frame.wrong, np.int32),
-    }
+        "traced": _deflated(frame.cost, np.int32), "due": _deflated(frame.due_rays, np.int32),
+        "untraced": _deflated(frame.saved, np.int32), "wrong": _deflated(frame.wrong, np.int32),
+    }  # fmt: skip
 
 
 def blockers(frame: Frame, world: World, lights: NDArray[np.float64], light: int) -> NDArray[np.int32]:

@@ -22,14 +22,11 @@ def comparison_of(
 ) -> tuple[ViewState, Comparison]:  # fmt: skip
     """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
     enlarged."""
+    settings = replace(settings, method=found.method, verify=False, samples=1, modes=False)
     state = ViewState(
-        scene=str(Path(scene.path).absolute()),
-        time=find.time,
-        camera=find.seen_camera,
-        settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
-        warmup=Warmup(find.before),
-        meshes=meshes,
-    )
+        str(Path(scene.path).absolute()), time=find.time, camera=find.seen_camera, settings=settings,
+        warmup=Warmup(find.before), meshes=meshes,
+    )  # fmt: skip
     methods, words = (NO_CULLING, found.method), " ".join(counterexample.in_words(find, scene))
     shown = Comparison(methods, (Crop.around((find.x, find.y), found.size),), ((find.x, find.y),), words)
     return state, shown.checked(state.size)
