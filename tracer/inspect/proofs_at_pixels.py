@@ -20,7 +20,7 @@ from tracer.culling.fate import FATE, Fate
 from tracer.inspect.projection import seen_at
 from tracer.methods.certified import CertifiedCells
 from tracer.neighbours.certified.cells import ALONG_U, ALONG_V, CORNER, NORMAL
-from tracer.neighbours.certified.slack import Cancel, SlackFinder, proved_cells
+from tracer.neighbours.certified.slack import Cancel, Report, SlackFinder, proved_cells
 
 if TYPE_CHECKING:
     from tracer.frame import Frame
@@ -72,7 +72,9 @@ def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Can
     return slack
 
 
-def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None) -> NDArray[np.int32]:
+def regret_at_pixels(
+    renderer: Renderer, frame: Frame, cancelled: Cancel = None, report: Report = lambda part: None
+) -> NDArray[np.int32]:
     """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
     `record_fates`."""
     finder = _finder_for(renderer, frame)
@@ -84,7 +86,7 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     with_cells = finder.store.cells.receivers[frame.primitive[y, x], NORMAL : NORMAL + 3].any(axis=1)
     y, x, light = y[with_cells], x[with_cells], light[with_cells]
     owner, u, v = _places(finder, frame, y, x)
-    proved = finder.are_provable(owner, u, v, light.astype(np.int32), cancelled)
+    proved = finder.are_provable(owner, u, v, light.astype(np.int32), cancelled, report)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)
     return regret

@@ -24,7 +24,7 @@ class Slack(DrawnView):
     )
     of_light = has_range = True
     asks = staticmethod(
-        lambda renderer, frame, light, cancelled: {_layer(light): slack_at_pixels(renderer, frame, light, cancelled)}
+        lambda renderer, frame, light, *told: {_layer(light): slack_at_pixels(renderer, frame, light, told[0])}
     )
 
     def can_draw(self, frame: Frame, light: int = 0) -> bool:

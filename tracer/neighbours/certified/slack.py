@@ -33,6 +33,8 @@ PART = 0.25  # of the diagonal of all that is static: slack is told up to that
 TRIED, HALVING = 256, 16  # radii of balls, and after how many of these they are half as large
 CHUNK = 64  # places that a thread takes at a time
 Cancel = Callable[[], bool] | None
+Report = Callable[[float], None]
+"""Told, by any thread, which part of all has been found."""
 
 
 @subkernel
@@ -93,13 +95,14 @@ class SlackFinder:
         return np.maximum(self._find(self.store.cells, o, cell, lights, self.most, cancelled), np.float32(0.0))
 
     def are_provable(
-        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, light: NDArray[np.int32], cancelled: Cancel = None
-    ) -> NDArray[np.bool_]:
+        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, light: NDArray[np.int32], cancelled: Cancel = None,
+        report: Report = lambda part: None,
+    ) -> NDArray[np.bool_]:  # fmt: skip
         """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them."""
         store = self.store
         place = smallest_at(u, v, levels_of(store.occluders.rows[owner >> 1], store.scale.max_height))
         cells, cell = store.cells._replace(owner=owner, place=place), np.arange(len(owner), dtype=np.int32)
-        return self._find(cells, store.occluders, cell, light, 0.0, cancelled) >= 0.0
+        return self._find(cells, store.occluders, cell, light, 0.0, cancelled, report) >= 0.0
 
     def _in_ball(self, light: int) -> Occluders:
         """The occluders fitted to a ball around a light, made when a light is asked about that has moved."""
@@ -110,14 +113,16 @@ class SlackFinder:
         return known[2]
 
     def _find(
-        self, cells: Cells, o: Occluders, cell: NDArray[np.int32], light: NDArray[np.int32], most: float, cancel: Cancel
-    ) -> NDArray[np.float32]:
+        self, cells: Cells, o: Occluders, cell: NDArray[np.int32], light: NDArray[np.int32], most: float,
+        cancel: Cancel, report: Report = lambda part: None,
+    ) -> NDArray[np.float32]:  # fmt: skip
         store, slack = self.store, np.empty(len(cell), np.float32)
         scratch = [make_scratch() for _ in range(store.threads)]
 
         def work(chunk: int, worker: int) -> None:
             rows = chunk * CHUNK, min(len(slack), (chunk + 1) * CHUNK)
             find_slack(cells, o, store.lights, store.scale, cell, light, most, *rows, slack, scratch[worker])
+            report(rows[1] / len(slack))
 
         for_each_chunk(work, -(-len(slack) // CHUNK), store.threads, cancel)
         return slack
