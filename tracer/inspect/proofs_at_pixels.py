@@ -1,8 +1,7 @@
 """What certificates of cells are worth at each pixel of a picture that is there already.
 
 *Slack* is how far a light may surely move before the certificate of a pixel's cell fails.  *Regret* is how many shadow
-rays of a primary hit were traced although the smallest cell at their point can be proved: a better method would have
-saved them.
+rays of a primary hit were traced although the smallest cell at their point can be proved.
 
 Both take a whole frame by a method with certificates of cells, and the renderer that made it; what this knows now
 counts, which may be more.  They raise LookupError where it has no certificates of cells for the lights as they were in
@@ -75,8 +74,7 @@ def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Can
 def regret_at_pixels(
     renderer: Renderer, frame: Frame, cancelled: Cancel = None, report: Report = lambda part: None
 ) -> NDArray[np.int32]:
-    """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
-    `record_fates`."""
+    """(h, w) the regret at each pixel, in lights, by `record_fates`, else ValueError; -1 where nothing is hit."""
     finder = _finder_for(renderer, frame)
     if frame.fates is None:
         raise ValueError("the frame did not record what became of its shadow rays")

@@ -1,8 +1,7 @@
 """A figure that can be explored: one HTML file, with a picture in which a reader clicks pixels.
 
-The page (`explorable.html`) draws views from what frames say of each pixel: modes, fates of shadow rays, rays, wrong
-answers, and what blocks a light.  All is in the file, deflated; nothing is fetched.  A notebook shows a frame by the
-same page, with what that frame has recorded.
+The page (`explorable.html`) draws views from what frames say of each pixel.  All is in the file, deflated; nothing is
+fetched.  A notebook shows a frame by the same page, with what that frame has recorded.
 """
 
 from __future__ import annotations
@@ -66,13 +65,11 @@ class Page(NamedTuple):
 
 
 def page_of_frame(frame: Frame, scene: Scene | None = None) -> Page:
-    """Return the page of one frame alone; lights and primitives have names if its scene is given.  Raises ValueError
-    where the picture is too large."""
+    """Return the page of one frame alone, with names if its scene is given; raises ValueError for too large a one."""
     check(frame.width, frame.height)
     name = frame.settings.method
     data = _about(frame, scene, [], f"{frame.time:.3f} s, {frame.width} × {frame.height}, {Method.parse(name).title}")
-    data["methods"] = [_method(name, frame, counters(frame.statistics))]
-    return Page(_page(data))
+    return Page(_page(data | {"methods": [_method(name, frame, counters(frame.statistics))]}))
 
 
 def _page(data: dict[str, Any]) -> str:
@@ -90,7 +87,9 @@ def page_data(shown: Shown, world: World) -> dict[str, Any]:
     words = ["shadowcull", "figure", _scene_word(scene.path), "-o", "figure.html"]
     data = _about(frame, scene, in_the_way, f"{scene.path.name}, frame {number}{before}")
     data["caption"], data["view"] = shown.comparison.words or state.draw.caption, state.draw.view.value
-    data["command"] = shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)])
+    options = commands.options(state.with_draw(caption=""), scene)
+    at = options.index("--method")  # which is of one method, and of one view
+    data["command"] = shlex.join([*words, "--methods", ",".join(shown.frames), *options[:at], *options[at + 2 :]])
     for name in dict.fromkeys(["none", *shown.frames]):
         one = shown.frames.get(name, frame)
         counts = Shown(scene, state, shown.comparison, {name: one}, frame).counts(name)
@@ -121,13 +120,6 @@ def _scene_word(path: Path) -> str:
     word, here = commands.scene_word(path), Path.cwd()
     word = str(Path(word).relative_to(here)) if Path(word).is_relative_to(here) else word
     return f"./{word}" if word.startswith("-") else word
-
-
-def _options(shown: Shown) -> list[str]:
-    """The options of the state, without what is of one method or one view."""
-    words = commands.options(shown.state.with_draw(caption=""), shown.scene)
-    at = words.index("--method")
-    return [*words[:at], *words[at + 2 :]]
 
 
 def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[str, Any]:

@@ -1,11 +1,9 @@
 """How far a light may move before a certificate fails, its *slack*; and what could be proved of the smallest cells.
 
 Where functions, boxes and planes are those of a ball around the light, a proof holds wherever in the ball the light is
-(`tracer.visibility`).  So a certificate is proved anew for balls, larger and smaller ones, until the largest is found
-that can be: no light that moves by less makes it untrue.  It may hold for longer.
-
-Of a ray that was traced, the smallest cell around its point tells whether certificates could have known the answer:
-a larger one has more to prove.  Nothing here is done unless somebody wants to look at it.
+(`tracer.visibility`).  So a certificate is proved anew for larger and smaller balls: no light that moves by less than
+the largest makes it untrue.  Of a ray that was traced, the smallest cell around its point tells whether certificates
+could have known the answer: a larger one has more to prove.
 """
 
 from __future__ import annotations
@@ -129,8 +127,7 @@ class SlackFinder:
 
 
 def proved_cells(cells: Cells, cell: NDArray[np.int32], light: int) -> NDArray[np.int32]:
-    """The cells (n,) of which the certificates, FULL or LIT, of cells (n,) were proved: these themselves, or such that
-    they are parts of; 0 for none."""
+    """(n,) the cells that the certificates, FULL or LIT, of cells (n,) were proved of: these, or wholes; 0 for none."""
     states = shadow_mode(cells.words[cell], light)
     cell = np.where((states == FULL) | (states == LIT), cell, np.int32(0))
     while True:
@@ -151,12 +148,9 @@ def levels_of(rows: NDArray[np.float32], highest: float) -> NDArray[np.float64]:
 
 def smallest_at(u: ArrayLike, v: ArrayLike, levels: ArrayLike) -> NDArray[np.float32]:
     """(n, 3) u, v and size of the cells at points (n,), in triangles that are divided so often (n,)."""
-    parts = np.exp2(np.asarray(levels, np.float64))
-    x, y = (np.clip(np.asarray(at, np.float64), 0.0, 1.0) * parts for at in (u, v))
+    parts, at = np.exp2(np.asarray(levels, np.float64)), np.clip(np.asarray([u, v], np.float64), 0.0, 1.0)
+    x, y = (1.0 - 1e-12) * parts * at / np.maximum(at.sum(0), 1.0)  # inside, also where they are on the far edge
     column, row = np.floor(x), np.floor(y)
-    down = (x - column + y - row > 1.0) & (column + row + 2.0 <= parts)  # the middle one of four, upside down
-    beyond = np.maximum(column + row + 1.0 - parts, 0.0)  # points on the far edge
-    back = np.minimum(beyond, column)
-    column, row = column - back, row - (beyond - back)
+    down = x - column + y - row > 1.0  # the middle one of four, upside down
     place = np.stack([column + down, row + down, np.where(down, -1.0, 1.0)], 1) / parts[:, None]
     return place.astype(np.float32)
