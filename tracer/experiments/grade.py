@@ -40,9 +40,8 @@ _CHANCE = ("seconds", "phases", "built", "decision")  # of statistics: what depe
 
 @dataclass
 class Row:
-    """What a trial came to: `counted` in the paper's tree and `timed` in the fast one, of `due` shadow rays in so many
-    frames, with so many pixels of another colour than by `none`.  Of `answers` at first hits, certificates prove some
-    and refute others."""
+    """What a trial came to: `counted` in the paper's tree and `timed` in the fast one, of `due` shadow rays, with so
+    many pixels `differing` from those of `none`; certificates prove and refute some of `answers` at first hits."""
 
     scene: str
     change: str
@@ -162,11 +161,11 @@ class Grade(Run[Card]):
         for counted, none, frame in self._traced(trial, self._counted, cancel):
             if self._kind.exact:
                 held += _held_against(proves.render(frame.time, cancel=cancel), none, frame)
-            differing += _differing(none, frame)
+            differing += int((frame.color != none.color).any(axis=-1).sum())
             if not self._kind.clusters:
                 self._keep_worst(trial, len(counted.frames) - 1, none, frame)
         for timed, none, frame in self._traced(trial, self._timed, cancel):  # noqa: B007
-            differing += _differing(none, frame)
+            differing += int((frame.color != none.color).any(axis=-1).sum())
             alone.append((frame.time, frame.color, frame.statistics.to_dict()))
         renderer = Renderer(trial.scene, replace(self._timed, threads=card.threads), world=self._world(trial, BVH8))
         for time, color, counts in alone:
@@ -215,16 +214,11 @@ class Grade(Run[Card]):
             worst.found = counterexample.to_json(find, scene)
 
 
-def _differing(none: Frame, frame: Frame) -> int:
-    """How many pixels have another colour."""
-    return int(np.count_nonzero((frame.color != none.color).any(axis=-1)))
-
-
 def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:
     """Count answers at first hits, and those that certificates prove and refute."""
     words, asked, reached, right = certified.certificates, none.asked, frame.reached, none.reached
     assert asked is not None and reached is not None and right is not None
-    proved = refuted = 0
+    counts = np.array([np.count_nonzero(asked), 0, 0])
     for light in range(frame.lights):
         if words is not None and has_shadow_mode(words, light):
             due, arrive, mode = asked[..., light], reached[..., light], shadow_mode(words, light)
@@ -232,6 +226,5 @@ def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:
             # What is certified as lit may be in the shadow of something that moves.
             lit = (due > 0) & (mode == NON_SHADOW) & (right[..., light] == due)
             wrong = (hidden & (arrive > 0)) | (lit & (arrive < due))
-            proved += int(np.count_nonzero((hidden | lit) & ~wrong))
-            refuted += int(np.count_nonzero(wrong))
-    return np.array([np.count_nonzero(asked), proved, refuted])
+            counts[1:] += np.count_nonzero((hidden | lit) & ~wrong), np.count_nonzero(wrong)
+    return counts
