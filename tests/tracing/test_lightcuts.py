@@ -30,7 +30,7 @@ from viewer.state.views import View
 from viewer.util.resources import embedded_scenes
 
 METHODS = ("lightcuts", "lightcuts-stochastic", "lightcuts-certified")
-SETTINGS = tracer.Settings(width=48, height=36, depth=2, method="lightcuts", threads=2)
+SETTINGS = tracer.Settings(width=36, height=27, depth=2, method="lightcuts", threads=2)
 ALL = {"lightcuts_error": 1e-30, "lightcuts_nodes": 65536}  # every cut is all lights
 
 
