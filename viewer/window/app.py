@@ -253,7 +253,8 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, [*scene.commands(self.ui), *self.ui.commands, *named_states.preset_commands(self.ui)])
+        ui = self.ui
+        menus.show(ui, lambda: [*scene.commands(ui), *ui.commands, *named_states.preset_commands(ui)])
         self.layout.show_menu()
         self.layout.show_workspaces()
 

@@ -123,8 +123,9 @@ class Keyboard:
         now = time.monotonic()
         if now - self._looked >= _EVERY:
             self._looked = now
-            self._letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
-            self._chords = {}
+            letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
+            if letters != self._letters:
+                self._letters, self._chords = letters, {}
 
     def chord(self, key: str) -> int:
         """Return ImGui's number of a key with its modifiers."""
