@@ -162,7 +162,7 @@ def method_steps(lights: int, accelerator: str) -> Iterator[str]:
     todo, points = store.gather(np.full(1, -1, np.int32), at, at, model.root_requests)
     store.certify(todo, points, model, store.count, np.zeros((store.threads, CERTIFYING), np.int64))
     none = np.zeros(1, np.int32)
-    certified.slack.are_provable(none, at, at, none, none)
+    certified.slack.are_provable(none, at, at, none)
     store.keep_within(0.0, np.zeros(1, np.int32))
     _certify_regions(accelerator)
 

@@ -236,7 +236,8 @@ def _objects(scene: Scene, edits: Edits) -> tuple[list[SceneObject], list[Held]]
             one, held = subset(one, kept), _of(held, kept)
         if name in times:
             if name not in edits.hidden and scene.animation.visible(one.chain, times[name]):
-                static, static_held = _joined(static, static_held, _at_rest(scene, one, times[name]), held, name)
+                static = joined(static, _at_rest(scene, one, times[name]), name)
+                static_held = np.append(static_held[0], held[0]), np.append(static_held[1], held[1])
             continue
         dynamic.append((replace(one, chain=(NEVER, *one.chain)) if name in edits.hidden else one, held))
     every = [(static, static_held), *dynamic, *freed]
@@ -279,20 +280,20 @@ def _at_rest(scene: Scene, one: SceneObject, time: float) -> SceneObject:
     return SceneObject(one.name, triangles, replace(one.quadrics, to_object=to_world))
 
 
-def _joined(static: SceneObject, held: Held, one: SceneObject, more: Held, name: str) -> tuple[SceneObject, Held]:
-    """What never moves, and an object that does not any more as a further part of it."""
-    parts = static.parts if static.part_of is not None else (static.name,)
-    part_of = static.part_of if static.part_of is not None else np.zeros(len(held[0]) + len(held[1]), np.int32)
-    new = np.full(len(more[0]) + len(more[1]), len(parts), np.int32)
-    split = [part_of[: len(held[0])], new[: len(more[0])], part_of[len(held[0]) :], new[len(more[0]) :]]
-    joined = replace(
+def joined(static: SceneObject, one: SceneObject, name: str) -> SceneObject:
+    """What never moves, with an object that does not move either as a further part of it."""
+    parts, part_of, n = static.parts, static.part_of, len(static.triangles)
+    if part_of is None:
+        parts, part_of = (static.name,), np.zeros(n + len(static.quadrics), np.int32)
+    new = np.full(len(one.triangles) + len(one.quadrics), len(parts), np.int32)
+    split = [part_of[:n], new[: len(one.triangles)], part_of[n:], new[len(one.triangles) :]]
+    return replace(
         static,
         triangles=_rows(Triangles, _TRIANGLES, static.triangles, one.triangles),
         quadrics=_rows(Quadrics, _QUADRICS, static.quadrics, one.quadrics),
         parts=(*parts, name),
-        part_of=np.concatenate(split).astype(np.int32),
+        part_of=np.concatenate(split),
     )
-    return joined, (np.concatenate([held[0], more[0]]), np.concatenate([held[1], more[1]]))
 
 
 def _rows(kind, names, one, other):

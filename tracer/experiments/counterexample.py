@@ -18,6 +18,8 @@ from tracer.util.text import mode_in_words
 
 PATH, AROUND = "path", "around"
 """Where a counterexample is: on the path that was searched, or beside it."""
+_TOLD = ("place", "time", "own_camera", "difference", "color", "reference", "primitive", "light", "verdict", "bounces",
+         "more_lights", "taught_time", "learnt_from")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -130,31 +132,18 @@ def _history(example: Counterexample) -> list[str]:
 def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
     """Return the counterexample as JSON has it. The commands' `--before` takes the file."""
     blocked = example.blocker >= 0
-    return {
-        "place": example.place,
+    return {name: getattr(example, name) for name in _TOLD} | {
         "frame": frame_number(scene, example.time),
-        "time": example.time,
         "camera": example.camera.to_json(),
-        "own_camera": example.own_camera,
         "pixel": [example.x, example.y],
-        "difference": example.difference,
-        "color": list(example.color),
-        "reference": list(example.reference),
-        "primitive": example.primitive,
         "primitive_name": primitive_in_words(scene, example.primitive),
-        "light": example.light,
         "light_name": scene.lights[example.light].name,
         "answer": "lit" if example.lit else "blocked",
-        "verdict": example.verdict,
         "blocker": example.blocker if blocked else None,
         "blocker_name": primitive_in_words(scene, example.blocker) if blocked else None,
-        "bounces": example.bounces,
-        "more_lights": example.more_lights,
         "wrong_pixels": example.pixels,
         "wrong_answers": example.answers,
         "differing_pixels": example.differing,
-        "taught_time": example.taught_time,
-        "learnt_from": example.learnt_from,
         "before": warmup_frames.to_json(example.before),
     }
 

@@ -224,7 +224,7 @@ def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:
     """Count answers at first hits, and those that certificates prove and refute."""
     words, asked, reached, right = certified.certificates, none.asked, frame.reached, none.reached
     assert asked is not None and reached is not None and right is not None
-    proved = refuted = 0
+    counts = np.array([np.count_nonzero(asked), 0, 0])
     for light in range(frame.lights):
         if words is not None and has_shadow_mode(words, light):
             due, arrive, mode = asked[..., light], reached[..., light], shadow_mode(words, light)
@@ -232,6 +232,5 @@ def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:
             # What is certified as lit may be in the shadow of something that moves.
             lit = (due > 0) & (mode == NON_SHADOW) & (right[..., light] == due)
             wrong = (hidden & (arrive > 0)) | (lit & (arrive < due))
-            proved += int(np.count_nonzero((hidden | lit) & ~wrong))
-            refuted += int(np.count_nonzero(wrong))
-    return np.array([np.count_nonzero(asked), proved, refuted])
+            counts[1:] += np.count_nonzero((hidden | lit) & ~wrong), np.count_nonzero(wrong)
+    return counts

@@ -7,7 +7,7 @@ still is wrong, and too bright or too dark as before.  That goes on until leavin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
 from tracer.editing.edits import NEVER as HIDDEN
-from tracer.editing.edits import subset
+from tracer.editing.edits import joined, subset
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import VISIBLE, History, find_at, repeatable, trace_before, wrong_in
 from tracer.experiments.runner import Run, never
@@ -30,7 +30,7 @@ from tracer.renderer import Renderer
 from tracer.scene.aff_writer import as_word
 from tracer.scene.bounds import ball_of, bounds
 from tracer.scene.lights import named_light
-from tracer.scene.model import Camera, Scene, Triangles
+from tracer.scene.model import Camera, Scene, SceneObject, Triangles, empty_quadrics
 from tracer.scene.things import held_by, thing_numbers
 
 Cancel = Callable[[], bool]
@@ -48,13 +48,6 @@ class WrongPixel:
     camera: Camera | None
     before: tuple[WarmupFrame, ...]
     settings: Settings
-
-    def checked(self) -> WrongPixel:
-        """Return it as it is traced here; raises ValueError, in one line, for a pixel outside of the picture."""
-        settings = repeatable(replace(self.settings, verify=False))
-        if not (0 <= self.x < settings.width and 0 <= self.y < settings.height):
-            raise ValueError(f"--pixel {self.x},{self.y}: the picture is {settings.width} x {settings.height}")
-        return replace(self, settings=settings)
 
 
 class Counts(NamedTuple):
@@ -102,8 +95,7 @@ def error(scene: Scene, wrong: WrongPixel, cancel: Cancel = never) -> float:
         return 0.0
     _, frame, _ = _traced(scene, wrong, cancel)
     assert frame.wrong is not None and frame.reference is not None
-    off = (frame.color - frame.reference)[wrong.y, wrong.x]
-    most = float(off[np.abs(off).argmax()])
+    most = float(max((frame.color - frame.reference)[wrong.y, wrong.x], key=abs))
     return most if frame.wrong[wrong.y, wrong.x] and abs(most) > VISIBLE else 0.0
 
 
@@ -198,13 +190,8 @@ def with_area(scene: Scene, area: float) -> Scene:
     corners = (np.add(middle, (_FAR * radius, 0.0, 0.0)) + edges)[None].astype(np.float32)
     normals = np.tile(np.array([0.0, 0.0, 1.0], np.float32), (1, 3, 1))
     number = np.zeros(1, np.int32)
-    both = static.triangles, Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
-    triangles = Triangles(**{f.name: np.concatenate([getattr(t, f.name) for t in both]) for f in fields(Triangles)})
-    parts, part_of = static.parts, static.part_of
-    if part_of is not None:
-        part_of = np.insert(part_of, len(static.triangles), len(parts)).astype(np.int32)
-        parts = (*parts, "area_left_out")
-    static = replace(static, triangles=triangles, parts=parts, part_of=part_of)
+    triangle = Triangles(corners, normals, np.zeros((1, 3, 2), np.float32), number, number - 1)
+    static = joined(static, SceneObject("", triangle, empty_quadrics()), "area_left_out")
     return replace(scene, objects=(static, *scene.objects[1:]))
 
 
@@ -230,7 +217,7 @@ def _far_ones_first(scene: Scene, traced: Scene, wrong: WrongPixel, cancel: Canc
     return np.argsort(-away, kind="stable")
 
 
-KINDS = ("frames", "lights", "objects", "primitives")
+KINDS: tuple[str, ...] = ("frames", "lights", "objects", "primitives")
 """What can be taken away, in the order in which it is tried: first what makes further tries quick."""
 
 
@@ -270,7 +257,10 @@ class Shrink(Run[Shrunk]):
 
     def __init__(self, scene: Scene, wrong: WrongPixel) -> None:
         """Raises ValueError, in one line, where settings or pixel are out of range."""
-        self.wrong = wrong.checked()
+        settings = repeatable(replace(wrong.settings, verify=False))
+        if not (0 <= wrong.x < settings.width and 0 <= wrong.y < settings.height):
+            raise ValueError(f"--pixel {wrong.x},{wrong.y}: the picture is {settings.width} x {settings.height}")
+        self.wrong = replace(wrong, settings=settings)
         super().__init__(scene, 1)
 
     def steps(self, scene: Scene, world: World | None, cancel: Cancel) -> Iterator[Shrunk]:
@@ -296,28 +286,26 @@ class Shrink(Run[Shrunk]):
     def _until_all_is_needed(self, now: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:
         """Leave out what is not needed of each kind until nothing more can be; `traced` makes of a scene that is left
         what is traced."""
-        done: set[str] = set()
-        while len(done) < len(KINDS):
-            for kind in [kind for kind in KINDS if kind not in done]:
-                sizes = sum(_count(other, now).bit_length() for other in KINDS if other not in done)
-                self.frames = self.traced + sizes
-                for smaller in self._without(kind, now, traced, cancel):
-                    if smaller.counts != now.counts:
-                        done.clear()
-                    now = smaller
-                    yield now
-                done.add(kind)
+        left = KINDS
+        while left:
+            self.frames = self.traced + sum(_count(kind, now).bit_length() for kind in left)
+            kind, left, before = left[0], left[1:], now.counts
+            for smaller in self._without(kind, now, traced, cancel):
+                yield (now := smaller)
+            if now.counts != before:  # so that others may be needed no more
+                left = KINDS[KINDS.index(kind) + 1 :] + KINDS[: KINDS.index(kind)]
 
     def _without(self, kind: str, begin: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:
         """Leave out what is not needed of a kind; gives what is left whenever that is less, and at last."""
         now, parts = begin, _parts(kind, begin.scene, begin.wrong, traced, cancel)
+        first = len(parts)
 
         def does(fewer: list[Any]) -> bool:
             """Whether the pixel is wrong with these alone."""
             nonlocal now, parts
             scene, wrong = _only(kind, begin.scene, begin.wrong, fewer)
             now = replace(now, tries=now.tries + 1)
-            self.label = f"{len(parts):,} of {_count(kind, begin):,} {kind}"
+            self.label = f"{len(parts):,} of {first:,} {kind}"
             self._wake()
             shows = np.sign(error(traced(scene), wrong, cancel)) == self._sign
             if shows:

@@ -51,13 +51,14 @@ def at_depth(frame: Frame, at: tuple[float, float], depth: float) -> tuple[float
     return float(x), float(y), float(z)
 
 
-def seen_at(frame: Frame, x: int, y: int) -> NDArray[np.float64]:
-    """The point (3,) that a pixel shows."""
+def seen_at(frame: Frame, x: int | NDArray[np.int64], y: int | NDArray[np.int64]) -> NDArray[np.float64]:
+    """The points (..., 3) that pixels (...) show."""
     right, up, forward = frame.camera.basis()
     pixel = 2.0 * math.tan(math.radians(frame.camera.angle) / 2.0) / frame.height
-    across, above = x + 0.5 - 0.5 * frame.width, 0.5 * frame.height - y - 0.5
-    way = forward + pixel * (across * right + above * up)
-    return np.asarray(frame.camera.position + float(frame.depth[y, x]) * way / np.linalg.norm(way))
+    across, above = np.add(x, 0.5 - 0.5 * frame.width), np.subtract(0.5 * frame.height - 0.5, y)
+    way = forward + pixel * (across[..., None] * right + above[..., None] * up)
+    way *= frame.depth[y, x][..., None] / np.linalg.norm(way, axis=-1, keepdims=True)
+    return np.asarray(frame.camera.position + way)
 
 
 def strokes(frame: Frame, line: ArrayLike) -> list[Stroke]:

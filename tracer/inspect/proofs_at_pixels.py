@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.fate import FATE, Fate
-from tracer.geometry.camera import pinhole
+from tracer.inspect.projection import seen_at
 from tracer.methods.certified import CertifiedCells
 from tracer.neighbours.certified.cells import ALONG_U, ALONG_V, CORNER, NORMAL
 from tracer.neighbours.certified.slack import Cancel, SlackFinder, proved_cells
@@ -27,27 +27,24 @@ if TYPE_CHECKING:
     from tracer.renderer import Renderer
 
 
-def _finder_for(renderer: Renderer, frame: Frame) -> tuple[SlackFinder, NDArray[np.int32]]:
-    """What finds slack, and the cell at each pixel (h, w)."""
+def _finder_for(renderer: Renderer, frame: Frame) -> SlackFinder:
+    """What finds slack in a frame."""
     method = renderer.state.method("certified")
     if not isinstance(method, CertifiedCells) or method.store is None or frame.cells is None:
         raise LookupError("the frame has no certificates of cells")
     there = renderer.scene.light_positions(frame.time)[: method.store.count].astype(np.float32)
     if not np.array_equal(method.store.lights, there):
         raise LookupError("another frame has begun, with lights elsewhere")
-    return method.slack, frame.cells
+    return method.slack
 
 
 def _places(
     finder: SlackFinder, frame: Frame, y: NDArray[np.int64], x: NDArray[np.int64]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
     """The owners of the cells, and u and v, of the points that pixels (n,) hit."""
-    rays, row = pinhole(frame.camera, frame.width, frame.height), finder.store.cells.receivers[frame.primitive[y, x]]
-    row = row.astype(np.float64)
-    way = rays.corner + x[:, None] * np.asarray(rays.column) + y[:, None] * np.asarray(rays.row)
-    way *= frame.depth[y, x, None] / np.linalg.norm(way, axis=1, keepdims=True)
-    eye = np.asarray(rays.origin) - row[:, CORNER : CORNER + 3]
-    u, v = (np.einsum("ij,ij->i", eye + way, row[:, at : at + 3]) for at in (ALONG_U, ALONG_V))
+    row = finder.store.cells.receivers[frame.primitive[y, x]].astype(np.float64)
+    eye, at = (point - row[:, CORNER : CORNER + 3] for point in (frame.camera.position, seen_at(frame, x, y)))
+    u, v = (np.einsum("ij,ij->i", at, row[:, way : way + 3]) for way in (ALONG_U, ALONG_V))
     below = np.einsum("ij,ij->i", eye, row[:, NORMAL : NORMAL + 3]) < 0.0
     return (2 * frame.primitive[y, x] + below).astype(np.int32), u, v
 
@@ -60,7 +57,7 @@ def _are_within(place: NDArray[np.float32], u: NDArray[np.float64], v: NDArray[n
 
 def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
     """(h, w) the slack of a light's certificates, in units of the scene; -1 where none says all."""
-    finder, cell = _finder_for(renderer, frame)
+    finder, cell = _finder_for(renderer, frame), frame.cell
     cells, slack = finder.store.cells, np.full(frame.primitive.shape, -1.0, np.float32)
     if light < finder.store.count and finder.store.certified[light]:
         y, x = np.nonzero((cell > 0) & (cell < cells.used[0]) & (frame.primitive >= 0))
@@ -78,7 +75,7 @@ def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Can
 def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None) -> NDArray[np.int32]:
     """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
     `record_fates`."""
-    finder, cells = _finder_for(renderer, frame)
+    finder = _finder_for(renderer, frame)
     if frame.fates is None:
         raise ValueError("the frame did not record what became of its shadow rays")
     certified = finder.store.certified
@@ -87,8 +84,7 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     with_cells = finder.store.cells.receivers[frame.primitive[y, x], NORMAL : NORMAL + 3].any(axis=1)
     y, x, light = y[with_cells], x[with_cells], light[with_cells]
     owner, u, v = _places(finder, frame, y, x)
-    cell = np.clip(cells[y, x], 0, finder.store.cells.used[0] - 1).astype(np.int32)
-    proved = finder.are_provable(owner, u, v, cell, light.astype(np.int32), cancelled)
+    proved = finder.are_provable(owner, u, v, light.astype(np.int32), cancelled)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)
     return regret

@@ -217,13 +217,12 @@ class CertifiedCells(WithStore):
         if store is None or light >= store.count or not store.certified[light]:
             return ""
         owner, u, v, number = store.place_of(primitive, point)
-        leaf = np.array([number], np.int32)
-        proved = proved_cells(store.cells, leaf, light)
+        proved = proved_cells(store.cells, np.array([number], np.int32), light)
         if proved[0]:
             slack, most = float(self.slack.of_cells(proved, light)[0]), self.slack.most
             return f"That stays so while the light moves by less than {slack:.3g}{'' if slack < most else ', or more'}."
         one = np.ones(1, np.int32)
-        if owner >= 0 and self.slack.are_provable(owner * one, [u], [v], leaf, light * one)[0]:
+        if owner >= 0 and self.slack.are_provable(owner * one, [u], [v], light * one)[0]:
             return "Regret: a cell that is small enough can be proved here."
         return ""
 

@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections import Counter
 from pathlib import Path
 
+from tracer.util.text import printable
 from viewer.cli.arguments import FAILED, Parser, count
 from viewer.cli.console import working
 from viewer.output.proof_checker import Checker
@@ -35,8 +36,6 @@ def run(given: Namespace) -> int:
     """Check; raises ValueError and OSError, each in one line, or Cancelled."""
     try:
         data = json.loads(given.proofs.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ValueError(f"{given.proofs}: {error.strerror}") from None
     except (ValueError, RecursionError):  # of bytes that are no text, too
         raise ValueError(f"{given.proofs}: this is not JSON") from None
     try:
@@ -53,12 +52,12 @@ def run(given: Namespace) -> int:
                 most = done
                 break
             number = done * total // most
-            proof = checker.proofs[number]
+            cell, light, verdict, _ = proof = checker.proofs[number]
             answer = checker.check(proof)
             if answer.holds:
-                held[proof[2]] += 1
-            if not answer.holds:
-                named = ascii(f"cell {proof[0]}, light {proof[1]}, {proof[2]}")[1:-1]
+                held[verdict] += 1
+            else:
+                named = printable(f"cell {cell}, light {light}, {verdict}")
                 failed.append(f"proof {number} ({named[:60]}): {answer.why}")
     for line in failed[:SHOWN]:
         print(line)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracer.experiments.counterexample import difference_of
 from tracer.frame import Frame
 from tracer.method import Method
 from tracer.scene.model import Scene
@@ -109,8 +110,7 @@ class Shown:
 
     def difference(self, method: str) -> NDArray[np.float32]:
         """(h, w) how far a method's colours are from those of "none": the largest of the three channels."""
-        here, right = (np.clip(frame.color, 0.0, 1.0) for frame in (self.frames[method], self.reference))
-        return np.abs(here - right).max(axis=-1)
+        return difference_of(self.frames[method].color, self.reference.color)
 
     def differing(self, method: str) -> int:
         """How many pixels are not those of "none", bit for bit."""

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 from tracer.culling.fate import Fate
 from tracer.frame import Frame, counters
-from tracer.geometry.camera import pinhole
 from tracer.geometry.rays import ray_batch
 from tracer.geometry.world import World
+from tracer.inspect.projection import seen_at
 from tracer.inspect.why_in_words import primitive_in_words
 from tracer.method import Method
 from tracer.scene.lights import light_in_words, named_light
@@ -117,7 +117,7 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
         "blockers": [_deflated(blocker, np.int32) for blocker in in_the_way],
         "classes": {"occlusion": _classes(OCCLUSION), "shadow": _classes(SHADOW), "fate": _classes(FATES)},
         "away": int(Fate.FACES_AWAY),
-        "colors": _deflated(np.round(255 * color_map()), np.uint8),
+        "colors": np.round(255 * color_map()).astype(int).tolist(),
         "methods": [],
     }
 
@@ -143,7 +143,7 @@ def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[st
         "name": name,
         "title": Method.parse(name).title,
         "counts": counts,
-        "picture": f"data:image/png;base64,{base64.b64encode(frame._repr_png_()).decode()}",
+        "pixels": _deflated(frame.pixels, np.uint8),
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
         "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in lights] if of_modes else [],
         "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
@@ -158,12 +158,9 @@ def blockers(frame: Frame, world: World, lights: NDArray[np.float64], light: int
     """(h, w) the first primitive from the middle of one of lights (l, 3) towards what each pixel shows; -1 where the
     light gets there, or is not due."""
     assert frame.asked is not None and frame.reached is not None
-    view = pinhole(frame.camera, frame.width, frame.height)
     y, x = np.nonzero((frame.primitive >= 0) & (frame.asked[..., light] > 0) & (frame.reached[..., light] == 0))
-    ways = view.corner + x[:, None] * view.column + y[:, None] * view.row
-    seen = view.origin + frame.depth[y, x][:, None] * ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    start = lights[light].astype(np.float32)
-    rays = ray_batch(np.repeat(start[None], len(seen), 0), seen - start, _BETWEEN, 1.0 - _BETWEEN)
+    starts = np.repeat(lights[light : light + 1], len(x), 0)
+    rays = ray_batch(starts, seen_at(frame, x, y) - starts, _BETWEEN, 1.0 - _BETWEEN)
     found = np.full(frame.primitive.shape, -1, np.int32)
     found[y, x] = world.closest_hits(rays).primitive
     return found

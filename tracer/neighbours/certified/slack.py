@@ -43,27 +43,26 @@ class Places(NamedTuple):
         owner: (n,) int32, as in `Cells`.
         place: (n, 3) float32, as in `Cells`.
         light: (n,) int32.
-        names: (m,) int32, numbers of primitives.
-        first, length: (n,) int32, where in these the only ones begin that need be asked, and how many; 0 for all.
+        names: as in `Cells`.
+        list: (n,) int32, as in `Cells.lists`: which primitives alone need be asked, or all.
     """
 
     owner: NDArray[np.int32]
     place: NDArray[np.float32]
     light: NDArray[np.int32]
     names: NDArray[np.int32]
-    first: NDArray[np.int32]
-    length: NDArray[np.int32]
+    list: NDArray[np.int32]
 
 
 @subkernel
 def _is_proved(o, lights, places, i, radius, s, counts):
     """Whether the cell that s.shaft was put to is proved to be hidden from a ball of light, or lit by all of it."""
-    number, first, count = np.int64(places.light[i]), np.int64(places.first[i]), np.int64(places.length[i])
+    number, start = np.int64(places.light[i]), np.int64(places.list[i])
     light = np.float64(lights[number, 0]), np.float64(lights[number, 1]), np.float64(lights[number, 2])
     if not put_light(s.shaft, light, radius):
         return False
-    given, asked = places.names[first : first + count], count if count > 0 else np.int64(TOO_MANY)
-    state, _amount = certify(s, o, number, light, given, asked, 0, counts)
+    asked = np.int64(places.names[start]) & (SETTLED - 1) if start > NOBODY else np.int64(TOO_MANY)
+    state, _amount = certify(s, o, number, light, places.names[start + 1 : start + 1 + asked], asked, 0, counts)
     return state in (FULL, LIT)
 
 
@@ -110,24 +109,16 @@ class SlackFinder:
     def of_cells(self, cell: NDArray[np.int32], light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
         """(n,) how far a light may surely move for its certificates of cells (n,), FULL or LIT, to hold."""
         cells, lights = self.store.cells, np.full(len(cell), light, np.int32)
-        places = Places(cells.owner[cell], cells.place[cell], lights, cells.names, *_lists(cells, cell, lights))
+        places = Places(cells.owner[cell], cells.place[cell], lights, cells.names, cells.lists[cell, light])
         return np.maximum(self._find(self._in_ball(light), places, self.most, cancelled), np.float32(0.0))
 
     def are_provable(
-        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, cell: NDArray[np.int32], light: NDArray[np.int32],
-        cancelled: Cancel = None,
-    ) -> NDArray[np.bool_]:  # fmt: skip
-        """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them.
-
-        The points may lie in cells (n,), 0 for none: of these certificates may name all that there is to ask."""
-        store, cells = self.store, self.store.cells
+        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, light: NDArray[np.int32], cancelled: Cancel = None
+    ) -> NDArray[np.bool_]:
+        """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them."""
+        store = self.store
         place = smallest_at(u, v, levels_of(store.occluders.rows[owner >> 1], store.scale.max_height))
-        # Of cells that are nested, one is a part of the other if its middle is in it.
-        middle, (u0, v0, size) = place + place[:, 2:] / 3.0, cells.place[cell].T
-        x, y = (middle[:, 0] - u0) * np.sign(size), (middle[:, 1] - v0) * np.sign(size)
-        inside = (cells.owner[cell] == owner) & (x > 0.0) & (y > 0.0) & (x + y < abs(size))
-        first, count = _lists(cells, np.where(inside, cell, np.int32(0)), light)
-        places = Places(owner, place, light, cells.names, first, count)
+        places = Places(owner, place, light, store.cells.names, np.full_like(owner, OVERFLOW))
         return self._find(store.occluders, places, 0.0, cancelled) >= 0.0
 
     def _in_ball(self, light: int) -> Occluders:
@@ -148,15 +139,6 @@ class SlackFinder:
 
         for_each_chunk(work, -(-len(slack) // CHUNK), store.threads, cancelled)
         return slack
-
-
-def _lists(
-    cells: Cells, cell: NDArray[np.int32], light: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Where in names the lists of certificates of cells (n,) for lights (n,) begin, and how long they are; 0 for all
-    that there is."""
-    at = cells.lists[cell, light]
-    return at + np.int32(1), np.where(at == OVERFLOW, np.int32(0), cells.names[at] & np.int32(SETTLED - 1))
 
 
 def proved_cells(cells: Cells, cell: NDArray[np.int32], light: int) -> NDArray[np.int32]:
