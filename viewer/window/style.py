@@ -114,6 +114,7 @@ _LENGTHS = {
 }  # fmt: skip
 
 _applied: tuple[float, str] = (0.0, "")
+_window = cache(glfw_utils.glfw_window_hello_imgui)  # which looks through the stack each time it is asked
 _first: tuple[float, float] | None = None  # how large Hello ImGui makes letters on the first screen, and its density
 
 
@@ -122,9 +123,6 @@ def content_scale() -> float:
     if sys.platform == "darwin":  # there windows are measured in points, and are enlarged with their letters
         return 1.0
     return float(max(glfw.get_window_content_scale(_window())))
-
-
-_window = cache(glfw_utils.glfw_window_hello_imgui)  # which looks through the stack each time it is asked
 
 
 def _scale_letters() -> None:
