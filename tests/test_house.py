@@ -77,7 +77,7 @@ def test_every_dependency_has_a_range() -> None:
 
 
 # Lines of Python, and files of it: each only ever goes down.
-MOST_LINES = {"viewer": 26_672, "tracer": 42_621, "tests/viewer": 13_191, "tests": 39_070}
+MOST_LINES = {"viewer": 26_653, "tracer": 42_576, "tests/viewer": 13_191, "tests": 39_070}
 MOST_FILES = {"viewer": 180}
 
 

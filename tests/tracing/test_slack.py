@@ -67,13 +67,11 @@ def test_slack_is_how_far_the_light_is_from_planes_through_the_cell_and_an_edge_
     slack, light, tried = slack_at_pixels(renderer, frame, 0), store.lights[0].astype(np.float64), 0
     for y, x in np.argwhere((frame.primitive < 2) & (slack > 0.0)):
         cell = proved_cells(store.cells, frame.cells[y, x : x + 1], 0)[0]
-        normals = [
-            np.cross(np.subtract(hood[k], p), np.subtract(hood[k - 1], p))
-            for k in range(3)
-            for p in prism_of(store, cell)
+        sides = [
+            (np.subtract(hood[k], p), np.subtract(hood[k - 1], p), p) for k in range(3) for p in prism_of(store, cell)
         ]
-        corners = [p for _ in range(3) for p in prism_of(store, cell)]
-        away = min(abs(n @ (light - p)) / np.linalg.norm(n) for n, p in zip(normals, corners, strict=True))
+        planes = [(np.cross(a, b), p) for a, b, p in sides]
+        away = min(abs(n @ (light - p)) / np.linalg.norm(n) for n, p in planes)
         assert 0.95 * min(away, SlackFinder(store).most) < slack[y, x] < away
         tried += 1
     assert tried > 100
@@ -108,9 +106,11 @@ def test_regret_is_a_naive_count() -> None:
     """Of the few certificates that a frame may make, most rays are left to be traced: those are regretted of which one
     triangle hides all corners of the smallest prism, or none hides any."""
     renderer, frame = _traced(_strewn(1, nasty=False), frames=2, certificates=10)
-    store = certificates_of(renderer)
+    store, parts = certificates_of(renderer), list[float]()
     assert store is not None and frame.fates is not None
-    regret, work, expected = regret_at_pixels(renderer, frame), renderer.work_on(frame), np.zeros((36, 48), np.int32)
+    regret, work = regret_at_pixels(renderer, frame, report=parts.append), renderer.work_on(frame)
+    expected = np.zeros((36, 48), np.int32)
+    assert len(parts) > 3 and min(parts) < 0.5 and max(parts) == 1.0
     triangles, highest = store.occluders.rows[:, :9].astype(np.float64), store.scale.max_height
     eye = np.asarray(work.rays.origin, np.float64)
     for y, x in np.argwhere(frame.primitive >= 0):

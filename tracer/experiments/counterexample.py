@@ -26,8 +26,8 @@ _TOLD = ("place", "time", "own_camera", "difference", "color", "reference", "pri
 class Counterexample:
     """A wrong pixel (x, y), and what is wrong there.
 
-    The pixel is `difference` (0 to 1, the largest of the three channels) from `reference`, the right colour; `color`
-    is what the method shows, both linear RGB.  A shadow ray from `primitive`, which the pixel shows after `bounces`,
+    The pixel is `difference` (0 to 1, as `difference_of` says) from `reference`, the right colour; `color` is what the
+    method shows, both linear RGB.  A shadow ray from `primitive`, which the pixel shows after `bounces`,
     to `light` got the answer `lit`, by `verdict`, the name of a `tracer.culling.verdicts.Verdict`; `blocker` is what
     is in the way, -1 for nothing; `more_lights` are wrong there in the same way.  `taught` is the number, among the
     frames before it, of the one that taught the mode, -1 where that is not known, and `taught_time` its time.  Of the
@@ -141,11 +141,9 @@ def to_json(example: Counterexample, scene: Scene) -> dict[str, Any]:
         "answer": "lit" if example.lit else "blocked",
         "blocker": example.blocker if blocked else None,
         "blocker_name": primitive_in_words(scene, example.blocker) if blocked else None,
-        "wrong_pixels": example.pixels,
-        "wrong_answers": example.answers,
-        "differing_pixels": example.differing,
+        "wrong_pixels": example.pixels, "wrong_answers": example.answers, "differing_pixels": example.differing,
         "before": warmup_frames.to_json(example.before),
-    }
+    }  # fmt: skip
 
 
 def difference_of(color: Float32, right: Float32) -> Float32:
@@ -170,18 +168,9 @@ def counterexample_in(tree: RayTree, scene: Scene) -> Counterexample | None:
     assert frame.reference is not None
     color, right = frame.color[tree.y, tree.x], frame.reference[tree.y, tree.x]
     return Counterexample(
-        time=frame.time,
-        camera=frame.camera,
-        x=tree.x,
-        y=tree.y,
-        difference=float(difference_of(color, right)),
-        color=vector(color),
-        reference=vector(right),
-        primitive=ray.primitive,
-        light=int(shadows.light[place]),
-        lit=lit,
-        verdict=VERDICTS[shadows.verdict[place]].value,
-        blocker=int(shadows.blocker[place]),
-        bounces=ray.bounce,
+        frame.time, frame.camera, tree.x, tree.y,
+        difference=float(difference_of(color, right)), color=vector(color), reference=vector(right),
+        primitive=ray.primitive, bounces=ray.bounce, light=int(shadows.light[place]), lit=lit,
+        verdict=VERDICTS[shadows.verdict[place]].value, blocker=int(shadows.blocker[place]),
         more_lights=len(np.unique(shadows.light[shadows.wrong & (shadows.lit == lit)])) - 1,
-    )
+    )  # fmt: skip

@@ -40,9 +40,8 @@ _CHANCE = ("seconds", "phases", "built", "decision")  # of statistics: what depe
 
 @dataclass
 class Row:
-    """What a trial came to: `counted` in the paper's tree and `timed` in the fast one, of `due` shadow rays in so many
-    frames, with so many pixels of another colour than by `none`.  Of `answers` at first hits, certificates prove some
-    and refute others."""
+    """What a trial came to: `counted` in the paper's tree and `timed` in the fast one, of `due` shadow rays, with so
+    many pixels `differing` from those of `none`; certificates prove and refute some of `answers` at first hits."""
 
     scene: str
     change: str
@@ -162,11 +161,11 @@ class Grade(Run[Card]):
         for counted, none, frame in self._traced(trial, self._counted, cancel):
             if self._kind.exact:
                 held += _held_against(proves.render(frame.time, cancel=cancel), none, frame)
-            differing += _differing(none, frame)
+            differing += int((frame.color != none.color).any(axis=-1).sum())
             if not self._kind.clusters:
                 self._keep_worst(trial, len(counted.frames) - 1, none, frame)
         for timed, none, frame in self._traced(trial, self._timed, cancel):  # noqa: B007
-            differing += _differing(none, frame)
+            differing += int((frame.color != none.color).any(axis=-1).sum())
             alone.append((frame.time, frame.color, frame.statistics.to_dict()))
         renderer = Renderer(trial.scene, replace(self._timed, threads=card.threads), world=self._world(trial, BVH8))
         for time, color, counts in alone:
@@ -213,11 +212,6 @@ class Grade(Run[Card]):
             find, rule = told
             worst.words = " ".join([*counterexample.in_words(find, scene)[1:], rule])  # the first says where it is
             worst.found = counterexample.to_json(find, scene)
-
-
-def _differing(none: Frame, frame: Frame) -> int:
-    """How many pixels have another colour."""
-    return int(np.count_nonzero((frame.color != none.color).any(axis=-1)))
 
 
 def _held_against(certified: Frame, none: Frame, frame: Frame) -> np.ndarray:

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracer.culling.verdicts import Verdict
-from tracer.editing.edits import NEVER as HIDDEN
-from tracer.editing.edits import joined, subset
+from tracer.editing.edits import NEVER, joined, subset
 from tracer.experiments.counterexample import Counterexample
 from tracer.experiments.hunt import VISIBLE, History, find_at, repeatable, trace_before, wrong_in
 from tracer.experiments.runner import Run, never
@@ -39,8 +38,7 @@ _FAR = 1000.0  # times the radius of what is left, with camera and lights: where
 
 @dataclass(frozen=True)
 class WrongPixel:
-    """A pixel (x, y) of the picture at `time` that is traced by `settings` after the frames `before`; a camera is the
-    scene's own where that is None."""
+    """A pixel of the picture at `time` by `settings`, after the frames `before`; a camera of None is the scene's."""
 
     x: int
     y: int
@@ -100,8 +98,7 @@ def error(scene: Scene, wrong: WrongPixel, cancel: Cancel = never) -> float:
 
 
 def explained(scene: Scene, wrong: WrongPixel) -> tuple[Counterexample, str] | None:
-    """Return what is wrong at the pixel, and a sentence that names the rule of the paper that failed; None where no
-    answer is wrong."""
+    """Return what is wrong at the pixel, and a sentence on the rule that failed; None where no answer is wrong."""
     renderer, frame, history = _traced(scene, wrong, never)
     find = find_at(renderer, frame, wrong.x, wrong.y, history, never)
     if find is None:
@@ -151,7 +148,7 @@ def bare(scene: Scene) -> Scene:
     """Return a scene as one file of AFF can hold it: without textures, and with names that are words."""
     objects = []
     for one in scene.objects:
-        if HIDDEN not in [element for element in one.chain if isinstance(element, str)]:
+        if NEVER not in [element for element in one.chain if isinstance(element, str)]:  # else it is hidden
             plain = np.full_like(one.triangles.texture, -1)
             objects.append(replace(one, triangles=replace(one.triangles, texture=plain)))
     lights = tuple(replace(light, name=light.track or as_word(light.name), number=None) for light in scene.lights)
@@ -284,8 +281,7 @@ class Shrink(Run[Shrunk]):
         yield from self._until_all_is_needed(now, lambda scene: scene, cancel)
 
     def _until_all_is_needed(self, now: Shrunk, traced: Callable[[Scene], Scene], cancel: Cancel) -> Iterator[Shrunk]:
-        """Leave out what is not needed of each kind until nothing more can be; `traced` makes of a scene that is left
-        what is traced."""
+        """Leave out what is not needed of each kind until nothing more can be; `traced(scene)` is what is traced."""
         left = KINDS
         while left:
             self.frames = self.traced + sum(_count(kind, now).bit_length() for kind in left)

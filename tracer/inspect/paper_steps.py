@@ -1,10 +1,9 @@
 """The paper's text run line by line for one pixel: `tracer.reference`, §2.3 to §2.6, on the data of a real frame.
 
-Nothing is written twice.  The text is that module's own source, and it runs as plain Python under a trace function,
-which notes what each line reads and writes.  It is given what the frame had: the primitives at all pixels, modes and
-counts before it, and the world as it was placed, which answers shadow rays.  What concerns the pixel runs: that it is
-compared with two reference pixels, its shadow rays at all bounces, and mode setting of the primitives that these speak
-of.  What other pixels add to that before modes are set is taken from the frame.
+The text is that module's own source, as plain Python under a trace function, which notes what each line reads and
+writes.  It is given what the frame had: the primitives at all pixels, modes and counts before it, and the world, which
+answers shadow rays.  What concerns the pixel runs: that it is compared with two reference pixels, its shadow rays, and
+mode setting of the primitives that these speak of.  What other pixels add to that is taken from the frame.
 """
 
 from __future__ import annotations
@@ -121,17 +120,15 @@ class PaperSteps:
 def paper_steps(renderer: Renderer, frame: Frame, x: int, y: int, cancelled: Cancel = None) -> PaperSteps:
     """Run the paper's text for a pixel of the renderer's last frame, all of which is there, in the order of the text.
 
-    Raises ValueError, in one line, if the text does not speak of such a frame, and else what `ray_tree` raises.
-    """
+    Raises ValueError, in one line, if the text does not speak of such a frame, and else what `ray_tree` raises."""
     work, title = renderer.work_on(frame), title_of(frame.settings.method)
     if not frame.settings.keeps_modes:
         raise ValueError(f"{title} keeps no modes of the paper; the method paper does")
     if len(work.first):
         raise ValueError(f"{title} keeps modes of cells, and the text speaks of primitives, as the method paper does")
     for lamp in np.flatnonzero(np.diff(work.shading.lamps.first) > 1).tolist():
-        raise ValueError(
-            f"the text knows points of light, and {named_light(renderer.scene.lights, lamp)} has several samples"
-        )
+        name = named_light(renderer.scene.lights, lamp)
+        raise ValueError(f"the text knows points of light, and {name} has several samples")
     return _Run(renderer, frame, x, y, cancelled).steps()
 
 

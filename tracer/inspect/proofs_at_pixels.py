@@ -1,8 +1,7 @@
 """What certificates of cells are worth at each pixel of a picture that is there already.
 
 *Slack* is how far a light may surely move before the certificate of a pixel's cell fails.  *Regret* is how many shadow
-rays of a primary hit were traced although the smallest cell at their point can be proved: a better method would have
-saved them.
+rays of a primary hit were traced although the smallest cell at their point can be proved.
 
 Both take a whole frame by a method with certificates of cells, and the renderer that made it; what this knows now
 counts, which may be more.  They raise LookupError where it has no certificates of cells for the lights as they were in
@@ -20,7 +19,7 @@ from tracer.culling.fate import FATE, Fate
 from tracer.inspect.projection import seen_at
 from tracer.methods.certified import CertifiedCells
 from tracer.neighbours.certified.cells import ALONG_U, ALONG_V, CORNER, NORMAL
-from tracer.neighbours.certified.slack import Cancel, SlackFinder, proved_cells
+from tracer.neighbours.certified.slack import Cancel, Report, SlackFinder, proved_cells
 
 if TYPE_CHECKING:
     from tracer.frame import Frame
@@ -72,9 +71,10 @@ def slack_at_pixels(renderer: Renderer, frame: Frame, light: int, cancelled: Can
     return slack
 
 
-def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None) -> NDArray[np.int32]:
-    """(h, w) the regret at each pixel, in lights; -1 where nothing is hit.  Raises ValueError for a frame without
-    `record_fates`."""
+def regret_at_pixels(
+    renderer: Renderer, frame: Frame, cancelled: Cancel = None, report: Report = lambda part: None
+) -> NDArray[np.int32]:
+    """(h, w) the regret at each pixel, in lights, by `record_fates`, else ValueError; -1 where nothing is hit."""
     finder = _finder_for(renderer, frame)
     if frame.fates is None:
         raise ValueError("the frame did not record what became of its shadow rays")
@@ -84,7 +84,7 @@ def regret_at_pixels(renderer: Renderer, frame: Frame, cancelled: Cancel = None)
     with_cells = finder.store.cells.receivers[frame.primitive[y, x], NORMAL : NORMAL + 3].any(axis=1)
     y, x, light = y[with_cells], x[with_cells], light[with_cells]
     owner, u, v = _places(finder, frame, y, x)
-    proved = finder.are_provable(owner, u, v, light.astype(np.int32), cancelled)
+    proved = finder.are_provable(owner, u, v, light.astype(np.int32), cancelled, report)
     regret = np.where(frame.primitive >= 0, 0, -1).astype(np.int32)
     np.add.at(regret, (y[proved], x[proved]), 1)
     return regret

@@ -73,6 +73,6 @@ def run(given: Namespace) -> int:
     about = {"made_by": f"shadowcull {program_version()}", "scene": given.path.name, "time": time}
     write_text(given.output, json.dumps(about | proofs) + "\n")
     full = sum(proof["verdict"] == "full" for proof in proofs["proofs"])
-    lit = len(proofs["proofs"]) - full
-    print(f"{given.output}: {several(len(proofs['cells']), 'cell')}, {full:,} times hidden, {lit:,} times lit")
+    cells, lit = several(len(proofs["cells"]), "cell"), len(proofs["proofs"]) - full
+    print(f"{given.output}: {cells}, {full:,} times hidden, {lit:,} times lit")
     return 0

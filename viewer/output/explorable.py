@@ -1,8 +1,7 @@
 """A figure that can be explored: one HTML file, with a picture in which a reader clicks pixels.
 
-The page (`explorable.html`) draws views from what frames say of each pixel: modes, fates of shadow rays, rays, wrong
-answers, and what blocks a light.  All is in the file, deflated; nothing is fetched.  A notebook shows a frame by the
-same page, with what that frame has recorded.
+The page (`explorable.html`) draws views from what frames say of each pixel.  All is in the file, deflated; nothing is
+fetched.  A notebook shows a frame by the same page, with what that frame has recorded.
 """
 
 from __future__ import annotations
@@ -66,13 +65,11 @@ class Page(NamedTuple):
 
 
 def page_of_frame(frame: Frame, scene: Scene | None = None) -> Page:
-    """Return the page of one frame alone; lights and primitives have names if its scene is given.  Raises ValueError
-    where the picture is too large."""
+    """Return the page of one frame alone, with names if its scene is given; raises ValueError for too large a one."""
     check(frame.width, frame.height)
     name = frame.settings.method
     data = _about(frame, scene, [], f"{frame.time:.3f} s, {frame.width} × {frame.height}, {Method.parse(name).title}")
-    data["methods"] = [_method(name, frame, counters(frame.statistics))]
-    return Page(_page(data))
+    return Page(_page(data | {"methods": [_method(name, frame, counters(frame.statistics))]}))
 
 
 def _page(data: dict[str, Any]) -> str:
@@ -89,9 +86,10 @@ def page_data(shown: Shown, world: World) -> dict[str, Any]:
     before = f", with what {several(shown.warmed, 'earlier frame')} taught" if shown.warmed else ""
     words = ["shadowcull", "figure", _scene_word(scene.path), "-o", "figure.html"]
     data = _about(frame, scene, in_the_way, f"{scene.path.name}, frame {number}{before}")
-    data["caption"] = shown.comparison.words or state.draw.caption
-    data["command"] = shlex.join([*words, "--methods", ",".join(shown.frames), *_options(shown)])
-    data["view"] = state.draw.view.value
+    data["caption"], data["view"] = shown.comparison.words or state.draw.caption, state.draw.view.value
+    options = commands.options(state.with_draw(caption=""), scene)
+    at = options.index("--method")  # which is of one method, and of one view
+    data["command"] = shlex.join([*words, "--methods", ",".join(shown.frames), *options[:at], *options[at + 2 :]])
     for name in dict.fromkeys(["none", *shown.frames]):
         one = shown.frames.get(name, frame)
         counts = Shown(scene, state, shown.comparison, {name: one}, frame).counts(name)
@@ -104,13 +102,9 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
     lights, left_out = min(frame.lights, MOST_LIGHTS), max(frame.lights - MOST_LIGHTS, 0)
     seen = [int(k) for k in np.unique([frame.primitive, *in_the_way]) if k >= 0]
     return {
-        "title": title,
-        "caption": "",
-        "command": "",
+        "title": title, "caption": "", "command": "", "view": "color", "methods": [],
         "note": f"{several(left_out, 'further light')} left out" if left_out else "",
-        "view": "color",
-        "width": frame.width,
-        "height": frame.height,
+        "width": frame.width, "height": frame.height,
         "lights": [named_light(scene.lights, k) if scene else light_in_words(k, "") for k in range(lights)],
         "primitives": {k: primitive_in_words(scene, k) if scene else f"primitive {k}" for k in seen},
         "primitive": _deflated(frame.primitive, np.int32),
@@ -118,8 +112,7 @@ def _about(frame: Frame, scene: Scene | None, in_the_way: list[NDArray[np.int32]
         "classes": {"occlusion": _classes(OCCLUSION), "shadow": _classes(SHADOW), "fate": _classes(FATES)},
         "away": int(Fate.FACES_AWAY),
         "colors": np.round(255 * color_map()).astype(int).tolist(),
-        "methods": [],
-    }
+    }  # fmt: skip
 
 
 def _scene_word(path: Path) -> str:
@@ -129,29 +122,18 @@ def _scene_word(path: Path) -> str:
     return f"./{word}" if word.startswith("-") else word
 
 
-def _options(shown: Shown) -> list[str]:
-    """The options of the state, without what is of one method or one view."""
-    words = commands.options(shown.state.with_draw(caption=""), shown.scene)
-    at = words.index("--method")
-    return [*words[:at], *words[at + 2 :]]
-
-
 def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[str, Any]:
     """What the page is told of a method."""
     lights, of_modes = range(min(frame.lights, MOST_LIGHTS)), frame.settings.keeps_modes
     return {
-        "name": name,
-        "title": Method.parse(name).title,
-        "counts": counts,
+        "name": name, "title": Method.parse(name).title, "counts": counts,
         "pixels": _deflated(frame.pixels, np.uint8),
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
         "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in lights] if of_modes else [],
         "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
-        "traced": _deflated(frame.cost, np.int32),
-        "due": _deflated(frame.due_rays, np.int32),
-        "untraced": _deflated(frame.saved, np.int32),
-        "wrong": _deflated(frame.wrong, np.int32),
-    }
+        "traced": _deflated(frame.cost, np.int32), "due": _deflated(frame.due_rays, np.int32),
+        "untraced": _deflated(frame.saved, np.int32), "wrong": _deflated(frame.wrong, np.int32),
+    }  # fmt: skip
 
 
 def blockers(frame: Frame, world: World, lights: NDArray[np.float64], light: int) -> NDArray[np.int32]:

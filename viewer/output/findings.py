@@ -20,25 +20,19 @@ from viewer.state.view_state import ViewState, Warmup
 def comparison_of(
     find: Counterexample, found: hunt.Results, scene: Scene, settings: Settings, meshes: MeshOptions,
 ) -> tuple[ViewState, Comparison]:  # fmt: skip
-    """Return the figure of a counterexample: the right picture and the method's, with the pixel's surroundings
-    enlarged."""
+    """Return the figure of a counterexample: the right picture and the method's, with what is around the pixel."""
+    settings = replace(settings, method=found.method, verify=False, samples=1, modes=False)
     state = ViewState(
-        scene=str(Path(scene.path).absolute()),
-        time=find.time,
-        camera=find.seen_camera,
-        settings=replace(settings, method=found.method, verify=False, samples=1, modes=False),
-        warmup=Warmup(find.before),
-        meshes=meshes,
-    )
+        str(Path(scene.path).absolute()), time=find.time, camera=find.seen_camera, settings=settings,
+        warmup=Warmup(find.before), meshes=meshes,
+    )  # fmt: skip
     methods, words = (NO_CULLING, found.method), " ".join(counterexample.in_words(find, scene))
     shown = Comparison(methods, (Crop.around((find.x, find.y), found.size),), ((find.x, find.y),), words)
     return state, shown.checked(state.size)
 
 
 def save_json(find: Counterexample, found: hunt.Results, scene: Scene, state: ViewState, path: Path) -> None:
-    """Write all about a counterexample, whose picture has this state, and the commands that explain and shrink it.
-
-    Raises OSError in one line."""
+    """Write all about a counterexample, whose picture has this state, and the commands that explain and shrink it."""
     words = [commands.scene_word(Path(state.scene)), *commands.options(replace(state, warmup=Warmup()))]
     words += ["--pixel", f"{find.x},{find.y}", "--before", path.name]
     told = {

@@ -47,10 +47,6 @@ class Things(NamedTuple):
         of_boxes = boxes.reshape(-1, 2, 3)[:, list(product((0, 1), repeat=3)), [0, 1, 2]]
         return cls(lights, triangles, cells, np.concatenate([of_triangles, of_boxes]))
 
-    def shaft(self, light: int, cell: int) -> np.ndarray:
-        """(7, 3): a light, and the corners of a prism."""
-        return np.vstack([self.lights[light], self.cells[cell]])
-
 
 class Checker:
     """Checks the proofs of a file, as JSON has it; raises ValueError, in one line, where it is none."""
@@ -82,14 +78,15 @@ class Checker:
         named = [(cell, cells), (light, lights), *((k, triangles) for k in by)]
         if not all(type(number) is int and 0 <= number < count for number, count in named):
             return Answer(False, "it names what is not in the file")
-        exact = self._exact.shaft(light, cell)
+        rounded, exact = (np.vstack([file.lights[light], file.cells[cell]]) for file in (self._rounded, self._exact))
         if verdict == "full":
             return self._check_full(exact, self._exact.triangles[by])
         if verdict == "lit":
-            return self._check_lit(self._rounded.shaft(light, cell), exact)
+            return self._check_lit(rounded, exact)
         return Answer(False, "its verdict is neither full nor lit")
 
     def _check_full(self, shaft: np.ndarray, blockers: np.ndarray) -> Answer:
+        """Of a shaft (7, 3), the light and the corners of the prism."""
         pieces = [np.eye(3, dtype=int).astype(object)]
         for triangle in blockers:
             functions, left = _functions(shaft[0], shaft[1:], *triangle), []

@@ -62,11 +62,10 @@ def in_words(card: Card) -> list[str]:
 
 def as_markdown(card: Card) -> str:
     """Return the card as Markdown."""
+    rows = [[column.heading for column in COLUMNS], ["---" if column.text else "---:" for column in COLUMNS]]
+    rows += [[column.cell(row) for column in COLUMNS] for row in card.rows]
     written = [f"## Report card: `{card.method}`, {card.size[0]} × {card.size[1]}", ""]
-    written += [f"| {' | '.join(column.heading for column in COLUMNS)} |"]
-    written += ["|---|---" + "|---:" * (len(COLUMNS) - 2) + "|"]
-    written += [f"| {' | '.join(column.cell(row) for column in COLUMNS)} |" for row in card.rows]
-    written += ["", *(f"- {sentence}" for sentence in in_words(card))]
+    written += [*(f"| {' | '.join(row)} |" for row in rows), "", *(f"- {sentence}" for sentence in in_words(card))]
     if card.whole and card.worst and card.worst.scene:
         written += ["", "What is left of the scene, as AFF:", "", "```", *card.worst.scene.splitlines(), "```"]
     return "\n".join(written) + "\n"

@@ -53,6 +53,7 @@ class FrameScheduler:
         self._failed: RenderRequest | None = None
         self._newest = Newest()  # layers that the renderer was asked for
         self._used: _Layers | None = None
+        self._counted = 0  # percent of those that are on their way
 
     # --- what is given ----------------------------------------------------------------------------
 
@@ -86,8 +87,15 @@ class FrameScheduler:
                 frame = replace(frame, asked=found.asked, reached=found.reached, only_light=draw.light)
                 self.traced = replace(self.traced, frame=frame)
         if can_ask(frame, draw.view):
-            self._newest.take(self._thread.query(_asked, frame, draw.view, draw.light))
+            self._newest.take(self._thread.query(_asked, frame, draw.view, draw.light, self._report))
             self._show_layers(frame, self._newest.answer)
+
+    def _report(self, part: float) -> None:
+        """Note which part of the layers is there, as the renderer's threads say, and show it."""
+        percent = int(100.0 * part) % 100
+        if percent != self._counted:
+            self._counted = percent
+            self._wake()
 
     def _show_layers(self, frame: Frame, found: _Layers | None) -> None:
         """Give the newest frame what was found last: for the frame before, until its own is there."""
@@ -308,7 +316,8 @@ class FrameScheduler:
         comes = settings.record_fates if draw.view.records is Record.FATES else asks or draw.view.records is not None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
-        return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'} ..."
+        counted = f" {self._counted} %" if self._counted and asks else ""
+        return f"{draw.view.label}: {'verifying' if draw.view.records is Record.VERIFY else 'counting'}{counted} ..."
 
 
 def _with_light(renderer: Renderer, frame: Frame, light: int, _cancelled: Callable[[], bool]) -> Frame:
@@ -323,10 +332,14 @@ class _Layers(NamedTuple):
     layers: dict[str, Any]
 
 
-def _asked(renderer: Renderer, frame: Frame, view: View, light: int, cancelled: Callable[[], bool]) -> _Layers | None:
+def _asked(
+    renderer: Renderer, frame: Frame, view: View, light: int, report: Callable[[float], None],
+    cancelled: Callable[[], bool],
+) -> _Layers | None:  # fmt: skip
+    report(0.0)
     try:
         assert view.asks is not None, "it can be asked"
-        return _Layers((view, light), frame, view.asks(renderer, frame, light, cancelled))
+        return _Layers((view, light), frame, view.asks(renderer, frame, light, cancelled, report))
     except LookupError:  # lights have moved on in another frame, which will be asked about
         return None
 

@@ -71,8 +71,7 @@ class Stepping:
             self._take(answer[0], answer[1])
 
     def _take(self, frame: Frame, found: PaperSteps | str) -> None:
-        """Add the steps of a frame, and go there if that is wanted, if it is another view, or if modes were forgotten
-        before it."""
+        """Add the steps of a frame, and go there if that is wanted, or if it is another view or has forgotten modes."""
         if isinstance(found, str):
             self._forget(found, frame.primitive)
             return

@@ -65,7 +65,8 @@ class Declaration:
 
     asks: ClassVar[Callable[..., dict[str, Any]] | None] = None
     """What finds the layers that it shows of a whole frame with certificates of cells, as that takes longer than a
-    frame may: of the renderer, the frame, a light, and `cancelled()`.  It may raise LookupError and Cancelled."""
+    frame may: of the renderer, the frame, a light, `cancelled()`, and perhaps `report(part)`, to which it says which
+    part is found.  It may raise LookupError and Cancelled."""
 
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
         """Return whether the frame holds what it shows, of this light where it is about one."""

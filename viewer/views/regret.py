@@ -27,9 +27,7 @@ class Regret(CountView):
     )
     records = Record.FATES
     shows = REGRET
-    asks = staticmethod(
-        lambda renderer, frame, light, cancelled: {REGRET: regret_at_pixels(renderer, frame, cancelled)}
-    )
+    asks = staticmethod(lambda renderer, frame, light, *told: {REGRET: regret_at_pixels(renderer, frame, *told)})
     what = "rays traced that could be proved"
     heading = "Rays traced that could be proved"
     each = "shadow rays of primary hits, of the first sample of each pixel"

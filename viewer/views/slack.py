@@ -24,7 +24,7 @@ class Slack(DrawnView):
     )
     of_light = has_range = True
     asks = staticmethod(
-        lambda renderer, frame, light, cancelled: {_layer(light): slack_at_pixels(renderer, frame, light, cancelled)}
+        lambda renderer, frame, light, *told: {_layer(light): slack_at_pixels(renderer, frame, light, told[0])}
     )
 
     def can_draw(self, frame: Frame, light: int = 0) -> bool:
@@ -56,8 +56,8 @@ class Slack(DrawnView):
         return single(_slack(frame, draw), "slack", hits(frame) & (_slack(frame, draw) >= 0.0))
 
     def words(self, frame: Frame, draw: DrawOptions, x: int, y: int) -> Lines:
-        slack = float(_slack(frame, draw)[y, x])
-        return (f"{slack:.3g}",) if slack >= 0.0 else ("none",)
+        slack = _slack(frame, draw)[y, x]
+        return (f"{slack:.3g}" if slack >= 0.0 else "none",)
 
 
 def _layer(light: int | str) -> str:

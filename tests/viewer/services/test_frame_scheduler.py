@@ -212,6 +212,8 @@ def test_what_the_renderer_is_asked_for_is_shown_till_the_next_frame_has_its_own
     window.session.set_draw(view=View.SLACK)
     trace()
     assert scheduler.drawn_view is View.COLOR and scheduler.title == "Slack: counting ..."
+    list(futures.values())[-1][3][-1](0.345)
+    assert scheduler.title == "Slack: counting 34 % ..."
     answer(1.0)
     assert scheduler.drawn_view is View.SLACK and shown() == 1.0
     trace()

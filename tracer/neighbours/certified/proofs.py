@@ -56,10 +56,8 @@ def proofs_of(store: CertificateStore, seen: Iterable[int]) -> list[Proof]:
 
 
 def as_json(store: CertificateStore, seen: Iterable[int], triangles: int) -> dict[str, Any]:
-    """Proofs with all that they rest on, each number exactly as kernels have it.
-
-    The first `triangles` of the primitives are triangles: of the others, and of what moves, only the boxes count, and
-    these are empty for what moves."""
+    """Proofs with all that they rest on, each number exactly as kernels have it.  The first `triangles` of the
+    primitives are triangles: of the others only the boxes count, which are empty for what moves."""
     place: dict[int, int] = {}  # of each cell among those that are written
     proofs = [proof._asdict() | {"cell": place.setdefault(proof.cell, len(place))} for proof in proofs_of(store, seen)]
     rows = store.occluders.rows.astype(np.float64)

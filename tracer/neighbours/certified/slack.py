@@ -1,26 +1,23 @@
 """How far a light may move before a certificate fails, its *slack*; and what could be proved of the smallest cells.
 
 Where functions, boxes and planes are those of a ball around the light, a proof holds wherever in the ball the light is
-(`tracer.visibility`).  So a certificate is proved anew for balls, larger and smaller ones, until the largest is found
-that can be: no light that moves by less makes it untrue.  It may hold for longer.
-
-Of a ray that was traced, the smallest cell around its point tells whether certificates could have known the answer:
-a larger one has more to prove.  Nothing here is done unless somebody wants to look at it.
+(`tracer.visibility`).  So a certificate is proved anew for larger and smaller balls: no light that moves by less than
+the largest makes it untrue.  Of a ray that was traced, the smallest cell around its point tells whether certificates
+could have known the answer: a larger one has more to prove.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracer.culling.modes import shadow_mode
-from tracer.neighbours.certified.cell_prism import put_cell
 from tracer.neighbours.certified.cells import FULL, LIT, NOBODY, OVERFLOW, SETTLED, TOO_MANY, Cells
 from tracer.neighbours.certified.certify import certify, make_scratch
-from tracer.neighbours.certified.tasks import DEEPEST, SMALLEST
+from tracer.neighbours.certified.tasks import DEEPEST, SMALLEST, put_cell_of
 from tracer.runtime.kernels import kernel, subkernel
 from tracer.runtime.parallel import for_each_chunk
 from tracer.visibility.budget import COUNTERS
@@ -34,50 +31,34 @@ PART = 0.25  # of the diagonal of all that is static: slack is told up to that
 TRIED, HALVING = 256, 16  # radii of balls, and after how many of these they are half as large
 CHUNK = 64  # places that a thread takes at a time
 Cancel = Callable[[], bool] | None
-
-
-class Places(NamedTuple):
-    """n cells, there or not, each with a light.
-
-    Attributes:
-        owner: (n,) int32, as in `Cells`.
-        place: (n, 3) float32, as in `Cells`.
-        light: (n,) int32.
-        names: as in `Cells`.
-        list: (n,) int32, as in `Cells.lists`: which primitives alone need be asked, or all.
-    """
-
-    owner: NDArray[np.int32]
-    place: NDArray[np.float32]
-    light: NDArray[np.int32]
-    names: NDArray[np.int32]
-    list: NDArray[np.int32]
+Report = Callable[[float], None]
+"""Told, by any thread, which part of all has been found."""
 
 
 @subkernel
-def _is_proved(o, lights, places, i, radius, s, counts):
-    """Whether the cell that s.shaft was put to is proved to be hidden from a ball of light, or lit by all of it."""
-    number, start = np.int64(places.light[i]), np.int64(places.list[i])
+def _is_proved(cells, o, lights, cell, number, radius, alone, s, counts):
+    """Whether the cell that s.shaft was put to is proved to be hidden from a ball of light, or lit by all of it;
+    `alone` by the primitives that its certificate names."""
     light = np.float64(lights[number, 0]), np.float64(lights[number, 1]), np.float64(lights[number, 2])
     if not put_light(s.shaft, light, radius):
         return False
-    asked = np.int64(places.names[start]) & (SETTLED - 1) if start > NOBODY else np.int64(TOO_MANY)
-    state, _amount = certify(s, o, number, light, places.names[start + 1 : start + 1 + asked], asked, 0, counts)
+    start = np.int64(cells.lists[cell, number]) if alone else np.int64(OVERFLOW)
+    asked = np.int64(cells.names[start]) & (SETTLED - 1) if start > NOBODY else np.int64(TOO_MANY)
+    state, _amount = certify(s, o, number, light, cells.names[start + 1 : start + 1 + asked], asked, 0, counts)
     return state in (FULL, LIT)
 
 
 @kernel
-def find_slack(o, lights, scale, places, most, first, last, slack, s):
-    """Find the slack (n,) float32 of places first to last - 1, at most `most`, and -1 where nothing is proved.
+def find_slack(cells, o, lights, scale, cell, light, most, first, last, slack, s):
+    """Find the slack (n,) float32 of cell (n,) int32 for light (n,) int32, from first to last - 1: at most `most`, and
+    -1 where nothing is proved.  Where `most` is 0, there is no certificate yet.
 
     o are the `Occluders`, fitted to balls of this radius around lights (n, 3) float32; scale is the `SceneScale`, s a
     worker's `Scratch`."""
     counts, tried = np.zeros(COUNTERS, np.int64), TRIED if most > 0.0 else 0
     for i in range(first, last):
-        owner, u, v, size = np.int64(places.owner[i]), places.place[i, 0], places.place[i, 1], places.place[i, 2]
-        side = 1.0 - 2.0 * (owner & 1)
         slack[i] = -1.0
-        if not put_cell(s.shaft, o.rows, owner >> 1, side, np.float64(u), np.float64(v), np.float64(size), scale):
+        if not put_cell_of(cells, o, np.int64(cell[i]), scale, s):
             continue
 
         # Halve the range of radii, of which the last is 0, down to the largest for which there is a proof.
@@ -85,7 +66,7 @@ def find_slack(o, lights, scale, places, most, first, last, slack, s):
         while low < high:
             middle = (low + high) // 2
             tries = most * 2.0 ** (-middle / HALVING) if middle < tried else 0.0
-            if _is_proved(o, lights, places, i, tries, s, counts):
+            if _is_proved(cells, o, lights, np.int64(cell[i]), np.int64(light[i]), tries, most > 0.0, s, counts):
                 high, radius = middle, tries
             else:
                 low = middle + 1
@@ -108,18 +89,18 @@ class SlackFinder:
 
     def of_cells(self, cell: NDArray[np.int32], light: int, cancelled: Cancel = None) -> NDArray[np.float32]:
         """(n,) how far a light may surely move for its certificates of cells (n,), FULL or LIT, to hold."""
-        cells, lights = self.store.cells, np.full(len(cell), light, np.int32)
-        places = Places(cells.owner[cell], cells.place[cell], lights, cells.names, cells.lists[cell, light])
-        return np.maximum(self._find(self._in_ball(light), places, self.most, cancelled), np.float32(0.0))
+        lights, o = np.full_like(cell, light), self._in_ball(light)
+        return np.maximum(self._find(self.store.cells, o, cell, lights, self.most, cancelled), np.float32(0.0))
 
     def are_provable(
-        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, light: NDArray[np.int32], cancelled: Cancel = None
-    ) -> NDArray[np.bool_]:
+        self, owner: NDArray[np.int32], u: ArrayLike, v: ArrayLike, light: NDArray[np.int32], cancelled: Cancel = None,
+        report: Report = lambda part: None,
+    ) -> NDArray[np.bool_]:  # fmt: skip
         """(n,) whether lights (n,) are proved to be hidden from the smallest cells at points (n,), or to light them."""
         store = self.store
         place = smallest_at(u, v, levels_of(store.occluders.rows[owner >> 1], store.scale.max_height))
-        places = Places(owner, place, light, store.cells.names, np.full_like(owner, OVERFLOW))
-        return self._find(store.occluders, places, 0.0, cancelled) >= 0.0
+        cells, cell = store.cells._replace(owner=owner, place=place), np.arange(len(owner), dtype=np.int32)
+        return self._find(cells, store.occluders, cell, light, 0.0, cancelled, report) >= 0.0
 
     def _in_ball(self, light: int) -> Occluders:
         """The occluders fitted to a ball around a light, made when a light is asked about that has moved."""
@@ -129,21 +110,24 @@ class SlackFinder:
             known = self._fitted[light] = store.occluders, place, store.occluders_in_ball(light, self.most)
         return known[2]
 
-    def _find(self, occluders: Occluders, places: Places, most: float, cancelled: Cancel) -> NDArray[np.float32]:
-        store, slack = self.store, np.empty(len(places.owner), np.float32)
+    def _find(
+        self, cells: Cells, o: Occluders, cell: NDArray[np.int32], light: NDArray[np.int32], most: float,
+        cancel: Cancel, report: Report = lambda part: None,
+    ) -> NDArray[np.float32]:  # fmt: skip
+        store, slack = self.store, np.empty(len(cell), np.float32)
         scratch = [make_scratch() for _ in range(store.threads)]
 
         def work(chunk: int, worker: int) -> None:
             rows = chunk * CHUNK, min(len(slack), (chunk + 1) * CHUNK)
-            find_slack(occluders, store.lights, store.scale, places, most, *rows, slack, scratch[worker])
+            find_slack(cells, o, store.lights, store.scale, cell, light, most, *rows, slack, scratch[worker])
+            report(rows[1] / len(slack))
 
-        for_each_chunk(work, -(-len(slack) // CHUNK), store.threads, cancelled)
+        for_each_chunk(work, -(-len(slack) // CHUNK), store.threads, cancel)
         return slack
 
 
 def proved_cells(cells: Cells, cell: NDArray[np.int32], light: int) -> NDArray[np.int32]:
-    """The cells (n,) of which the certificates, FULL or LIT, of cells (n,) were proved: these themselves, or such that
-    they are parts of; 0 for none."""
+    """(n,) the cells that the certificates, FULL or LIT, of cells (n,) were proved of: these, or wholes; 0 for none."""
     states = shadow_mode(cells.words[cell], light)
     cell = np.where((states == FULL) | (states == LIT), cell, np.int32(0))
     while True:
@@ -164,12 +148,9 @@ def levels_of(rows: NDArray[np.float32], highest: float) -> NDArray[np.float64]:
 
 def smallest_at(u: ArrayLike, v: ArrayLike, levels: ArrayLike) -> NDArray[np.float32]:
     """(n, 3) u, v and size of the cells at points (n,), in triangles that are divided so often (n,)."""
-    parts = np.exp2(np.asarray(levels, np.float64))
-    x, y = (np.clip(np.asarray(at, np.float64), 0.0, 1.0) * parts for at in (u, v))
+    parts, at = np.exp2(np.asarray(levels, np.float64)), np.clip(np.asarray([u, v], np.float64), 0.0, 1.0)
+    x, y = (1.0 - 1e-12) * parts * at / np.maximum(at.sum(0), 1.0)  # inside, also where they are on the far edge
     column, row = np.floor(x), np.floor(y)
-    down = (x - column + y - row > 1.0) & (column + row + 2.0 <= parts)  # the middle one of four, upside down
-    beyond = np.maximum(column + row + 1.0 - parts, 0.0)  # points on the far edge
-    back = np.minimum(beyond, column)
-    column, row = column - back, row - (beyond - back)
+    down = x - column + y - row > 1.0  # the middle one of four, upside down
     place = np.stack([column + down, row + down, np.where(down, -1.0, 1.0)], 1) / parts[:, None]
     return place.astype(np.float32)

@@ -40,12 +40,11 @@ def show(ui: Ui) -> None:
 def _plan(ui: Ui) -> None:
     plan = ui.controller.runs.hunt_plan
     with properties("plan", 4.6) as shown:
-        if not shown:
-            return
-        row("Method", "The method whose wrong pixels are searched; an exact one has none.")
-        method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
-        frames_row(ui, plan, "First and last frame of the path, traced one after another.")
-        plan_rows(ui, plan, "step", "around", "radius", "seed", "size")
+        if shown:
+            row("Method", "The method whose wrong pixels are searched; an exact one has none.")
+            method_list(ui, "##method", plan.method, lambda name: setattr(plan, "method", name), combined=False)
+            frames_row(ui, plan, "First and last frame of the path, traced one after another.")
+            plan_rows(ui, plan, "step", "around", "radius", "seed", "size")
 
 
 def _findings(ui: Ui, found: hunt.Results, scene: Scene) -> None:

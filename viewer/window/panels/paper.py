@@ -90,7 +90,6 @@ def _text(ui: Ui, now: PaperSteps, place: int) -> None:
             clipped(", ".join(map(str, ran[number].values)) if number in ran else " ", QUIET)
             continue
         paragraph(", ".join(filter(None, (step.note, *(str(one) for one in step.values if not one.before)))) or " ")
-        for one in step.values:
-            if one.before:
-                paragraph(str(one), TEAL)
+        for changed in filter(lambda one: one.before, step.values):
+            paragraph(str(changed), TEAL)
     imgui.end_table()
