@@ -120,8 +120,7 @@ class Keyboard:
 
     def update(self) -> None:
         """Look what is printed where, now and then."""
-        now = time.monotonic()
-        if now - self._looked >= _EVERY:
+        if (now := time.monotonic()) - self._looked >= _EVERY:
             self._looked = now
             letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
             if letters != self._letters:

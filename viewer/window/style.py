@@ -120,9 +120,8 @@ _first: tuple[float, float] | None = None  # how large Hello ImGui makes letters
 
 def content_scale() -> float:
     """What the desktop wants everything enlarged by on the window's screen; needs a window."""
-    if sys.platform == "darwin":  # there windows are measured in points, and are enlarged with their letters
-        return 1.0
-    return float(max(glfw.get_window_content_scale(_window())))
+    # On macOS windows are measured in points, and are enlarged with their letters.
+    return 1.0 if sys.platform == "darwin" else float(max(glfw.get_window_content_scale(_window())))
 
 
 def _scale_letters() -> None:

@@ -61,7 +61,6 @@ def culling(d: Driver) -> None:
     for key in ("H", "Shift+H"):
         d.press(key).settle()
         assert d.c.scheduler.drawn_view is d.c.session.draw.view and not d.c.scheduler.outdated
-    d.change(method="certified")  # other methods with an addition would have kernels of their own
     _clusters(d)
     _space(d)
 
