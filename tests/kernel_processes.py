@@ -6,6 +6,8 @@ process that has loaded numba and no more."""
 from __future__ import annotations
 
 import atexit
+import contextlib
+import io
 import os
 import sys
 import tempfile
@@ -36,6 +38,17 @@ def ask(package: str, more: dict[str, str], numbers: tuple[str, ...], slow: bool
         said = [float(tiny.ask(eval(number))) for number in numbers]
         answer.send((said, sum(tiny.ask.stats.cache_hits.values()), folder_of(Path(tiny.__file__))))
         atexit._run_exitfuncs()  # which a forked process leaves out
+    except BaseException:
+        answer.send(traceback.format_exc())
+
+
+def run(code: str, more: dict[str, str], answer: Connection) -> None:
+    """Send what code from no file prints, or else a text that says what went wrong."""
+    try:
+        os.environ.update(more)
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            exec(code, {"__name__": "__main__"})
+        answer.send((printed.getvalue(),))
     except BaseException:
         answer.send(traceback.format_exc())
 

@@ -6,11 +6,12 @@ from functools import cache
 from pathlib import Path
 
 import tracer
+from tracer.scene.load import load_scene
 
 
 @cache
 def loaded(path: Path) -> tracer.Scene:
-    return tracer.load_scene(path)
+    return load_scene(path)
 
 
 @cache

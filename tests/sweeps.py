@@ -11,7 +11,7 @@ from tracer.geometry.accelerators import ACCELERATORS as EVERY_ACCELERATOR
 from tracer.geometry.accelerators import BVH8, KD_TREE
 
 ALL = os.environ.get("SHADOWCULL_TESTS") == "all"
-MORE = 8  # times as many examples of random scenes
+MORE = 16  # times as many examples of random scenes
 
 T = TypeVar("T")
 

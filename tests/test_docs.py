@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import os
 import re
 import runpy
 import shlex
@@ -19,6 +18,7 @@ import yaml
 from PIL import Image
 
 import tracer
+from tests.scenes import loaded
 from tests.sweeps import ALL
 from tracer.experiments import experiment
 from tracer.experiments.study import read_study
@@ -80,6 +80,7 @@ def test_examples_run(
     script = tmp_path / f"{page.stem}.py"
     script.write_text("\n".join(block for block in blocks(page, "python") if "sys.argv" not in block))
     monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(tracer, "load_scene", lambda path: loaded(ROOT / path))  # the same scene on many pages
     known = {kind.name for kind in (*bases(measures=True), *additions(measures=True))}
     try:
         runpy.run_path(str(script), run_name="__main__")
@@ -90,22 +91,17 @@ def test_examples_run(
     assert capsys.readouterr().out
 
 
-def run(folder: Path, script: Path, code: str, *arguments: object) -> str:
-    """Run a script in a folder; returns what it prints."""
-    script.write_text(code)
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    command = [sys.executable, script, *map(str, arguments)]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def test_table_1_from_python(tmp_path: Path) -> None:
+def test_table_1_from_python(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (code,) = (block for block in blocks(PYTHON, "python") if "sys.argv" in block)
     size = "SIZE, FRAMES = 512, 100"
     assert code.count(size) == 1
-    printed = run(tmp_path, tmp_path / "script.py", code.replace(size, "SIZE, FRAMES = 48, 7"), SCENE)
-    heading, *lines = printed.splitlines()
+    (tmp_path / "script.py").write_text(code.replace(size, "SIZE, FRAMES = 48, 7"))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["script.py", str(SCENE)])
+    runpy.run_path("script.py", run_name="__main__")
+    heading, *lines = capsys.readouterr().out.splitlines()
     columns = ["method", "steps saved (most, frame)", "tests saved (most, frame)", "extra/pixel", "wrong"]
     assert re.split(" {2,}", heading) == columns
 

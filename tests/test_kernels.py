@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -53,17 +53,20 @@ def write_helper(package: Path, value: int) -> None:
 
 def start(package: Path, folder: Path, *numbers: str, slow: bool = False, **more: str) -> tuple[Any, Connection]:
     """A process that asks the kernel for numbers, and where its answer will come from."""
+    return started(kernel_processes.ask, str(package), {"SHADOWCULL_CACHE_DIR": str(folder)} | more, numbers, slow)
+
+
+def started(target: Callable[..., None], *arguments: Any) -> tuple[Any, Connection]:
     answer, other = PROCESSES.Pipe(duplex=False)
-    environment = {"SHADOWCULL_CACHE_DIR": str(folder)} | more
-    process = PROCESSES.Process(target=kernel_processes.ask, args=(str(package), environment, numbers, slow, other))
+    process = PROCESSES.Process(target=target, args=(*arguments, other))
     process.start()
     other.close()
     return process, answer
 
 
-def finish(started: tuple[Any, Connection]) -> tuple[list[float], int, Path]:
+def finish(one: tuple[Any, Connection]) -> tuple[Any, ...]:
     """What a process says: the kernel's answers, how many versions of it came from the cache, and from where."""
-    process, answer = started
+    process, answer = one
     assert answer.poll(120)
     said = answer.recv()
     process.join(120)
@@ -95,10 +98,15 @@ def test_a_kernel_is_found_again_wherever_its_sources_lie_and_never_stale(packag
 def test_a_kernel_from_no_file_is_compiled_and_not_kept(tmp_path: Path) -> None:
     """As in a notebook, where another cell may stand in the same line."""
     code = "from tracer.runtime.kernels import kernel\n\n@kernel\ndef twice(x):\n    return 2 * x\nprint(twice(21))\n"
-    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
-    assert (done.stdout, done.stderr) == ("42\n", "")
+    assert finish(started(kernel_processes.run, code, {"SHADOWCULL_CACHE_DIR": str(tmp_path)})) == ("42\n",)
     assert not list(tmp_path.rglob("*.nbc"))
+
+
+def statements(body: list[ast.stmt]) -> Iterator[ast.AST]:
+    for node in body:
+        yield node
+        for name in ("body", "orelse", "finalbody", "handlers", "cases"):
+            yield from statements(getattr(node, name, []))
 
 
 def test_all_that_a_source_imports_is_found() -> None:
@@ -106,13 +114,8 @@ def test_all_that_a_source_imports_is_found() -> None:
     for path in sorted((ROOT / "tracer").rglob("*.py")):
         imported = kernel_cache._imported(path)
         tree = ast.parse(path.read_text())
-        for_types = {
-            node
-            for block in tree.body
-            if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
-            for node in ast.walk(block)
-        }
-        for node in set(ast.walk(tree)) - for_types:
+        for_types = [b for b in tree.body if isinstance(b, ast.If) and ast.unparse(b.test) == "TYPE_CHECKING"]
+        for node in statements([block for block in tree.body if block not in for_types]):
             if isinstance(node, ast.Import):
                 taken = [name.name for name in node.names]
             elif isinstance(node, ast.ImportFrom):
@@ -275,9 +278,7 @@ def test_for_a_picture_less_is_compiled_and_the_rest_later(tmp_path: Path) -> No
         "assert compilation.compiled_before()\n"
         "assert made == [list(steps.FOR_A_PICTURE), ['methods']], made\n"
     )
-    environment = os.environ | {"SHADOWCULL_CACHE_DIR": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    assert finish(started(kernel_processes.run, code, {"SHADOWCULL_CACHE_DIR": str(tmp_path)})) == ("",)
 
 
 def test_a_cache_is_compiled_for_its_processor(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ import pytest
 
 import tracer
 from tests.scenes import loaded
+from tests.sweeps import crossed
 from tests.tracing.worlds import affine, moved, quad, quadrics, scene
 from tracer.experiments import zoom
 from tracer.experiments.zoom import Change
@@ -127,8 +128,7 @@ SLANTED = {"static": [[(-8, -4, 8), (8, -4, -8), (0, 8, 0)]]}
 SPHERE = {"static_quadrics": quadrics([(SPHERE, affine(0.5, (-0.2, 0.1, 0.0)), (1.0, 1.0))])}
 
 
-@pytest.mark.parametrize("size", [127, 128])
-@pytest.mark.parametrize("shape", [SLANTED, SPHERE])
+@pytest.mark.parametrize(("shape", "size"), crossed([SLANTED, SPHERE], [127, 128]))
 def test_a_slanted_surface_is_seen_to_the_end(shape: dict, size: int):
     """So near, the camera would have passed a surface of which it had aimed half a pixel off."""
     world = scene(**shape, lights=[(0, 5, 20)])

@@ -196,7 +196,7 @@ def test_few_bytes_are_held_for_each_triangle(tmp_path, monkeypatch, write, most
     monkeypatch.setattr("tracer.scene.studio._BLOCK", 1 << 12)
     monkeypatch.setattr("tracer.scene.up_axis.MOST_ASKED", 1 << 12)
     path = tmp_path / f"a.{write.__name__[-3:]}"
-    write(path, frequency_for(80_000))
+    write(path, frequency_for(40_000))
     load_scene(path, meshes=IN_STUDIO)  # whatever is imported and compiled
     tracemalloc.start()
     try:

@@ -1,16 +1,17 @@
-"""Vectors in exact arithmetic: lists of three fractions, for judges that must not round."""
+"""Vectors in exact arithmetic, for judges that must not round."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from fractions import Fraction
 
-Exact = list[Fraction]
+Exact = list[int]
 
 
-def exact(values: Iterable[float]) -> Exact:
-    """Numbers as they are in binary."""
-    return [Fraction(float(x)) for x in values]
+def exact(*vectors: Iterable[float]) -> list[Exact]:
+    """Vectors times the same power of two, which makes them whole; fractions would be reduced at every step."""
+    ratios = [[float(x).as_integer_ratio() for x in vector] for vector in vectors]
+    scale = max(below for vector in ratios for _, below in vector)
+    return [[above * (scale // below) for above, below in vector] for vector in ratios]
 
 
 def minus(a: Exact, b: Exact) -> Exact:
@@ -23,5 +24,5 @@ def cross(a: Exact, b: Exact) -> Exact:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
-def dot(a: Exact, b: Exact) -> Fraction:
+def dot(a: Exact, b: Exact) -> int:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

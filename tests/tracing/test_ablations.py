@@ -20,7 +20,7 @@ def test_smaller_packets_give_the_same_answers_by_more_steps(method: str) -> Non
     """Of random scenes; rays that go together share their steps, so that fewer together take more."""
     steps = dict.fromkeys((128, 16, 1), 0)
 
-    @quickly(4)
+    @quickly(2)
     @given(walks())
     def check(walk: Walk) -> None:
         whole = tracer.Renderer(walk.scene, replace(SETTINGS, method=method))
@@ -45,7 +45,7 @@ def test_other_caches_change_nothing_but_what_is_asked(cache: str, accelerator: 
     """Their counters, too, are those of any number of threads."""
     hits = 0
 
-    @quickly(6)
+    @quickly(3)
     @given(walks())
     def check(walk: Walk) -> None:
         nonlocal hits

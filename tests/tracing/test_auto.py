@@ -162,7 +162,7 @@ def whimsical() -> Iterator[str]:
 def test_pictures_and_modes_are_right_whatever_is_decided(whimsical: str, accelerator: str):
     model = CostModel(2, 4, 3, 48, True, 1)
     plain, told, tried = 0, 0, 0
-    for seed in range(cases(10, 20)):
+    for seed in range(cases(5, 20)):
         walk = nasty_walk(seed, frames=8)
         world = tracer.World(walk.scene, accelerator=accelerator)
         settings = {"width": 70, "height": 20, "depth": 2, "accelerator": accelerator, "modes": bool(seed % 2)}

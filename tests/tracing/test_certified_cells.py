@@ -124,7 +124,7 @@ def _searched(draw: st.DrawFn) -> tuple[tracer.Scene, Camera]:
 def test_no_occluder_near_the_edge_of_a_beam_makes_a_certificate_wrong(accelerator: str):
     seen: Counter[str] = Counter()
 
-    @quickly(16)
+    @quickly(8)
     @given(_searched())
     def search(searched: tuple[tracer.Scene, Camera]) -> None:
         made, camera = searched

@@ -73,7 +73,7 @@ def test_a_picture_of_many_tiles_requests_and_certifies_the_same_with_any_number
     """Several threads look at its tiles at once, which they do not in small pictures."""
 
     def counted(threads: int) -> list[tuple[int, ...]]:
-        settings = tracer.Settings(width=320, height=240, depth=1, method="certified", threads=threads)
+        settings = tracer.Settings(width=256, height=192, depth=1, method="certified", threads=threads)
         world = world_of(SCENES / "default.aff", "bvh8")
         renderer = tracer.Renderer(world.scene, settings, world=world)
         frames = [renderer.render(0.0).statistics for _ in range(2)]

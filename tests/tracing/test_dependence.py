@@ -72,7 +72,7 @@ def separated(a: np.ndarray, b: np.ndarray) -> bool:
 def test_a_mode_is_dropped_where_a_ray_meets_the_box_and_kept_where_a_plane_keeps_it_out(round_ones: bool):
     seen = {"met": 0, "separated": 0}
 
-    @quickly(5)
+    @quickly(16)
     @given(st.integers(0, 2**32 - 1), st.sampled_from([0.05, 0.5, 2.0]), st.sampled_from([0.1, 0.5, 1.5]))
     def check(seed: int, size: float, room: float) -> None:
         rng = np.random.default_rng(seed)
@@ -89,7 +89,8 @@ def test_a_mode_is_dropped_where_a_ray_meets_the_box_and_kept_where_a_plane_keep
             met = np.array([rays_meet(light, p, box).any() for p in points])
             assert lost[met].all()
             pyramids = np.concatenate([np.broadcast_to(light, (n, 1, 3)), corners], axis=1)
-            clear = np.array([separated(pyramid, corners_of_boxes(box[None])[0]) for pyramid in pyramids])
+            clear = ~met
+            clear[clear] = [separated(pyramid, corners_of_boxes(box[None])[0]) for pyramid in pyramids[clear]]
             assert not lost[clear].any()
             seen["met"] += int(met.sum())
             seen["separated"] += int(clear.sum())

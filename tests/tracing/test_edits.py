@@ -207,7 +207,7 @@ def test_a_renderer_beside_another_shows_the_same_edits():
     assert np.array_equal(second.render(0.0, ABOVE).color, first.render(0.0, ABOVE).color)
 
 
-@quickly(12)
+@quickly(6)
 @given(walk=walks(), seed=st.integers(0, 2**32 - 1))
 def test_numbers_lead_back_to_the_scene_as_it_was_read(walk: Walk, seed: int):
     original = in_parts(walk.scene)
@@ -225,7 +225,7 @@ def test_numbers_lead_back_to_the_scene_as_it_was_read(walk: Walk, seed: int):
     assert edited(original, NO_EDITS).scene is original
 
 
-@quickly(8)
+@quickly(4)
 @given(made=scenes(), time=st.floats(0.0, 3.0))
 def test_objects_that_are_made_static_are_where_they_were(made: Scene, time: float):
     moving = [t for t in things(made) if t.moves]

@@ -16,8 +16,8 @@ from tracer.geometry.camera import pinhole
 from tracer.scene.deformation import deformed
 from tracer.scene.model import Light, empty_quadrics
 
-SIZE = 160
-STRAY = 3  # of SIZE x SIZE rays, those that pass an edge so near that rounding decides
+SIZE = 96
+STRAY = 1  # of SIZE x SIZE rays, those that pass an edge so near that rounding decides
 
 
 def triangles_alone(scene: tracer.Scene) -> tracer.Scene:

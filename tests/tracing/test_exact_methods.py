@@ -14,6 +14,7 @@ from tests.sweeps import ACCELERATORS, EVERY_ACCELERATOR, cases
 from tests.tracing.nasty_worlds import NastyWalk, flattened_walk, nasty_walk, with_lamps
 from tests.tracing.same import assert_same
 from tracer.culling.modes import MAX_CULLED_LIGHTS
+from tracer.geometry.accelerators import BVH8
 from tracer.neighbours.certified.cost_model import CostModel
 
 # Small pictures are to have many certificates on either structure, and to test candidates.
@@ -65,8 +66,9 @@ METHODS = (
 
 @pytest.mark.parametrize("accelerator", EVERY_ACCELERATOR)
 def test_lights_that_jump_and_objects_that_drift_stop_and_rest(accelerator: str) -> None:
-    count = cases(30 if accelerator in ACCELERATORS else 5, 400)
-    walks = (nasty_walk(seed, frames=4) for seed in range(count))
+    """By every method; each structure has walks of its own, as what is proved of a walk is by the same code."""
+    first, count = cases((15, 15) if accelerator == BVH8 else (0, 15 if accelerator in ACCELERATORS else 5), (0, 400))
+    walks = (nasty_walk(seed, frames=4) for seed in range(first, first + count))
     seen = compare(walks, every(METHODS, 5), replace(SETTINGS, accelerator=accelerator))
     assert set(seen) == {part for method in METHODS for part in method.split("+")}
     if count > 5:
@@ -78,7 +80,7 @@ def test_lights_that_jump_and_objects_that_drift_stop_and_rest(accelerator: str)
             "cache": ("cache_hits",),
             "free": ("culled",),
         }.items():
-            assert min(seen[method][name] for name in told) > 100, (method, seen[method])
+            assert min(seen[method][name] for name in told) > 50, (method, seen[method])
 
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
@@ -102,10 +104,10 @@ def test_lamps(accelerator: str) -> None:
 
 @pytest.mark.parametrize("accelerator", ACCELERATORS)
 def test_more_lights_and_lamps_than_words_have_room_for(accelerator: str) -> None:
-    walks = [nasty_walk(seed, lights=MAX_CULLED_LIGHTS + 5, frames=2) for seed in range(4, cases(7, 60))]
-    walks += [with_lamps(walk) for walk in walks[:2]]
+    walks = [nasty_walk(seed, lights=MAX_CULLED_LIGHTS + 5, frames=2) for seed in range(4, cases(6, 60))]
+    walks += [with_lamps(walk) for walk in walks[: cases(1, 2)]]
     methods = every(("certified", "lie-exact", "voxels", "certified+lie-exact"), 2)
-    settings = replace(SETTINGS, accelerator=accelerator, lamp_samples=20)
+    settings = replace(SETTINGS, width=26, height=20, accelerator=accelerator, lamp_samples=20)
     seen = compare(walks, methods, settings)
     assert min(seen[method]["passed_over"] for method in ("certified", "lie-exact")) > 100, seen
     assert seen["certified"]["culled"] > 1000, "samples that recent occluders hide"
@@ -117,8 +119,8 @@ EXACT = ("none+cache", "certified", "certified+cache", "voxels", "lie-exact", "l
 @pytest.mark.parametrize("method", [*EXACT, "paper+cache", "paper+rest", "cells"])
 def test_frames_are_the_same_on_any_number_of_threads(method: str) -> None:
     """Of several tiles; beside an exact method, modes are those beside `none`."""
-    settings = replace(SETTINGS, width=130, height=70, method=method, modes=True, verify=True, record_lights=True)
-    for walk in (nasty_walk(4, frames=3), with_lamps(nasty_walk(5, lights=MAX_CULLED_LIGHTS + 2, frames=2))):
+    settings = replace(SETTINGS, width=66, height=66, method=method, modes=True, verify=True, record_lights=True)
+    for walk in (nasty_walk(4, frames=2), with_lamps(nasty_walk(5, lights=MAX_CULLED_LIGHTS + 2, frames=2))):
         one, three = (
             tracer.Renderer(walk.scene, replace(settings, threads=threads), cost_model=EAGER) for threads in (1, 3)
         )

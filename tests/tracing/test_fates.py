@@ -70,7 +70,7 @@ def test_fates_are_those_of_the_modes_that_the_frame_before_has_left(method: str
     met = set[Fate]()
 
     @given(walk=walks())
-    @quickly(6)
+    @quickly(3)
     def check(walk: Walk) -> None:
         renderer = tracer.Renderer(walk.scene, replace(SETTINGS, method=method))
         for time, camera in walk.frames[:5]:
@@ -92,7 +92,7 @@ def test_shadow_modes_gain_what_traced_rays_have_found_and_nothing_else(method: 
     gained = 0
 
     @given(walk=walks())
-    @quickly(6)
+    @quickly(3)
     def check(walk: Walk) -> None:
         nonlocal gained
         still = replace(walk.scene, objects=walk.scene.objects[:1])

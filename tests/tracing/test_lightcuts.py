@@ -97,7 +97,7 @@ def test_nasty_worlds_are_those_of_none_where_cuts_are_all_lights(seed: int) -> 
 @pytest.mark.parametrize("method", METHODS)
 def test_frames_repeat_for_any_number_of_threads_and_whatever_came_before(method: str) -> None:
     made = hall(lights=lights_of(2, 60, track="swings"))
-    tiles = replace(SETTINGS, width=130, height=70, method=method, samples=2)
+    tiles = replace(SETTINGS, width=66, height=66, method=method, samples=2)
     one, three = (tracer.Renderer(made, replace(tiles, threads=threads)) for threads in (1, 3))
     certified = method == "lightcuts-certified"
     first = one.render(0.4)
@@ -106,7 +106,7 @@ def test_frames_repeat_for_any_number_of_threads_and_whatever_came_before(method
     again, fresh = three.render(0.4), one.render(0.4) if certified else first
     assert again.color.tobytes() == fresh.color.tobytes()
     moved = three.render(1.6)
-    none = frame_of(made, 1.6, method="none", width=130, height=70)
+    none = frame_of(made, 1.6, method="none", width=66, height=66)
     whole = replace(three.settings, samples=1)
     three.settings = whole
     moved = three.render(1.6)

@@ -42,7 +42,7 @@ def by_one(before: np.ndarray, after: np.ndarray) -> ModeChanges:
     return changes
 
 
-@quickly(40)
+@quickly(20)
 @given(st.integers(0, 300), st.sampled_from([np.uint32, np.uint64]), st.integers(0, 2**32 - 1))
 def test_random_words_are_counted_alike_by_any_number_of_threads(count, word, seed):
     rng = np.random.default_rng(seed)

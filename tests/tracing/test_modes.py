@@ -93,7 +93,7 @@ def test_occlusion_modes_are_set_by_the_papers_rules(units, zoom, shadow_bits):
 UNITS = 4
 
 
-@quickly(40, shrink=True)
+@quickly(20, shrink=True)
 @given(st.sampled_from([1, 15, 16, 31, 40]), st.lists(st.booleans(), min_size=UNITS, max_size=UNITS), st.data())
 def test_words_over_many_frames_are_what_the_naive_twin_says(lights, dynamic, data):
     """Lights move, units are hidden or not and cover more or fewer pixels, and workers learn side by side."""

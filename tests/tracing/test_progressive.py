@@ -42,7 +42,7 @@ def assert_whole(frame: tracer.Frame, expected: tracer.Frame, where: str) -> Non
 
 @pytest.mark.parametrize("accelerator", cases((BVH8,), ACCELERATORS))
 @given(walk=walks())
-@quickly(5)
+@quickly(3)
 def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: Walk):
     """Bit for bit, all that a frame holds and learns, frame after frame, whichever parts come first."""
     for number, method in enumerate(("paper", "cells", "certified")):
@@ -62,7 +62,7 @@ def test_what_becomes_whole_is_what_is_rendered_at_once(accelerator: str, walk: 
 
 
 @given(walk=walks())
-@quickly(5)
+@quickly(3)
 def test_what_is_shaded_is_shown_as_it_is(walk: Walk):
     """Pixels of a part that have been shaded have their final colours; more of them in each part."""
     time, camera = walk.frames[0]

@@ -185,7 +185,7 @@ def test_pictures_are_those_without_culling_in_random_scenes():
     """But for what the paper's method gets wrong, which the reference picture shows right."""
     rested = 0
 
-    @quickly(15)
+    @quickly(8)
     @given(walks())
     def check(walk: Walk) -> None:
         nonlocal rested
@@ -200,7 +200,7 @@ def test_pictures_are_those_without_culling_in_random_scenes():
             rested += int(renderers[1].state.rest.now.since.any())
 
     check()
-    assert rested > 20
+    assert rested > 10
 
 
 @pytest.mark.parametrize("accelerator", cases(["bvh8"], ACCELERATORS))
@@ -212,20 +212,20 @@ def test_kitchens_car_starts_and_stops_and_no_picture_differs(bart: Path, accele
     poses = [content.animation.matrix(chain, content.frame_time(i)).tobytes() for i in range(content.frames)]
     start = next(i for i in range(1, content.frames) if poses[i] != poses[i - 1])
     in_view = (700, 701, 702, 702, 702, 702, 703, 704, 704, 704, 704, 705, 706, 707, 708)
-    numbers = [*range(start - 8, start + 7), *in_view]
+    numbers = [*range(start - 3, start + 3), *in_view]
     still = [True] + [poses[a] == poses[b] for a, b in pairwise(numbers)]
     rests = []
     width, height = cases((64, 48), (96, 64))
     settings = tracer.Settings(width, height, depth=2, record_lights=True, accelerator=accelerator)
-    methods = ("none", "none+rest", "paper+rest")
-    none, resting, paper = (
+    methods = ("none", "none+rest", "paper+rest", "certified")
+    none, resting, paper, certified = (
         tracer.Renderer(content, replace(settings, method=m, verify="paper" in m), world=world) for m in methods
     )
     for number in numbers:
         time = content.frame_time(number)
         expected, frame, culled = none.render(time), resting.render(time), paper.render(time)
         assert np.array_equal(frame.color, expected.color) and np.array_equal(frame.lit, expected.lit)
-        assert np.array_equal(culled.reference, expected.color)
+        assert all(np.array_equal(c, expected.color) for c in (culled.reference, certified.render(time).color))
         rests.append(bool(paper.state.rest.now.since[1]))
     assert rests == still and 0 < sum(np.diff(np.int8(rests)) > 0) < sum(np.diff(np.int8(rests)) != 0)
 

@@ -45,15 +45,15 @@ def length(a: Exact) -> float:
 
 def crossing(origin: np.ndarray, direction: np.ndarray, corners: np.ndarray) -> Crossing | None:
     """Where a ray crosses the plane of a triangle (3, 3); None where it lies in that plane, up to rounding."""
-    o, d, (a, b, c) = exact(origin), exact(direction), map(exact, corners)
+    o, d, a, b, c = exact(origin, direction, *corners)
     e1, e2, s = minus(b, a), minus(c, a), minus(o, a)
     normal, q = cross(e1, e2), cross(s, d)
     det = -dot(d, normal)
     sizes, away = length(e1) * length(e2), length(s)
     if abs(det) <= ROUNDING * length(d) * sizes:
         return None
-    u, v, t = (float(x / det) for x in (dot(e2, q), -dot(e1, q), dot(s, normal)))
-    unit = ROUNDING / abs(float(det))
+    u, v, t = (x / det for x in (dot(e2, q), -dot(e1, q), dot(s, normal)))
+    unit = ROUNDING / abs(det)
     of_det = unit * length(d) * sizes
     of_u = unit * away * length(d) * length(e2) + abs(u) * of_det
     of_v = unit * away * length(d) * length(e1) + abs(v) * of_det

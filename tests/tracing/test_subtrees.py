@@ -51,7 +51,7 @@ def assert_alike(lazy: tracer.World, whole: tracer.World, rays: Rays, threads: i
 def test_random_worlds_answer_alike_lazy_whole_and_not_in_subtrees(monkeypatch: pytest.MonkeyPatch) -> None:
     parts: list[BuiltPart] = []
 
-    @quickly(12)
+    @quickly(6)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: Scene, time: float, seed: int) -> None:
         rng = np.random.default_rng(seed)

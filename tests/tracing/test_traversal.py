@@ -78,7 +78,7 @@ def test_rays_through_edges_and_corners_go_the_naive_twins_way(seed: int):
 def test_rays_go_the_naive_twins_way_through_random_scenes():
     sums = np.zeros((2, 2), np.int64)
 
-    @quickly(25)
+    @quickly(12)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         nonlocal sums

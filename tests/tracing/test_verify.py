@@ -43,7 +43,7 @@ def test_the_reference_of_random_scenes_is_the_picture_without_culling(method: s
     """And without bounces it is known which answers are wrong."""
     wrong = 0
 
-    @quickly(10)
+    @quickly(5)
     @given(walks(), st.integers(0, 4))
     def check(walk: Walk, depth: int) -> None:
         nonlocal wrong

@@ -195,8 +195,8 @@ def claim(triangle: Vectors, light: Hull, receiver: Hull, sure: float, corner_er
 
 
 def crosses(triangle: Vectors, start: Vectors, end: Vectors) -> bool:
-    """Whether a segment crosses the inside of a triangle (9,): exactly, in rational numbers."""
-    a, e1, e2, begin, aim = map(exact, (triangle[:3], triangle[3:6], triangle[6:], start, end))
+    """Whether a segment crosses the inside of a triangle (9,): exactly, in whole numbers."""
+    a, e1, e2, begin, aim = exact(triangle[:3], triangle[3:6], triangle[6:], start, end)
     d, s, n = minus(aim, begin), minus(begin, a), cross(e1, e2)
     u, v, along, t = dot(d, cross(e2, s)), dot(d, cross(s, e1)), -dot(d, n), dot(s, n)
     if along < 0:

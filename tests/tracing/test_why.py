@@ -51,7 +51,7 @@ def pixels(frame: Frame, step: int = 1) -> list[tuple[int, int]]:
 # --- what hides a primitive ----------------------------------------------------------------------
 
 
-@quickly(12)
+@quickly(6)
 @given(walks(), st.booleans(), st.sampled_from(["paper", "cells"]))
 def test_what_is_partly_occluded_is_found_so_and_nothing_else(walk: Walk, symmetric: bool, method: str):
     renderer = Renderer(walk.scene, Settings(24, 18, method=method, threads=1, symmetric=symmetric, depth=0))
@@ -111,7 +111,7 @@ METHODS = (
 @pytest.mark.parametrize("method", METHODS)
 def test_the_fates_of_all_pixels_are_what_the_frame_has_counted(scene_file: Path, method: str):
     """Pixel by pixel, too, and those that the view of fates shows."""
-    settings = Settings(20, 15, method=method, threads=1, depth=0, record_work=True, record_fates=True, modes=True)
+    settings = Settings(16, 12, method=method, threads=1, depth=0, record_work=True, record_fates=True, modes=True)
     renderer = Renderer(load_scene(scene_file), settings)
     for time in (5.0, 5.5, 6.0):
         frame = renderer.render(time)

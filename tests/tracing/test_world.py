@@ -63,7 +63,7 @@ def test_queries_agree_with_float64_in_random_scenes(accelerator):
     """Triangles, spheres and cones, static, moving, vanishing and deforming."""
     compared: Counter[str] = Counter()
 
-    @quickly(20)
+    @quickly(10)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         world = tracer.World(made, time, accelerator)
@@ -91,7 +91,7 @@ def test_occluders_are_met_by_their_rays_alone(accelerator):
     """By the arithmetic of each structure, bit for bit; something static is named where anything static blocks."""
     seen: Counter[str] = Counter()
 
-    @quickly(40)
+    @quickly(20)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         world, rng = tracer.World(made, time, accelerator), np.random.default_rng(seed)
