@@ -27,8 +27,7 @@ It can check proofs of other programs, too: docs/proofs.md describes the file.
 def parser() -> Parser:
     parser = Parser("check-proofs", "Check proofs of visibility in exact arithmetic.", EPILOG)
     parser.add_argument("proofs", type=Path, metavar="FILE", help="proofs, as `shadowcull prove` writes them")
-    help_ = "how many are checked, evenly spread (default: all)"
-    parser.add_argument("--most", type=count(1, 2**31 - 1), metavar="N", help=help_)
+    parser.add_argument("--most", type=count(1, 2**31 - 1), metavar="N", help="check so many of them (default: all)")
     return parser
 
 

@@ -34,7 +34,8 @@ from viewer.window.display import Graphics
 from viewer.window.gl_window import NO_OPENGL, closing_by_signals, window_params
 from viewer.window.guard import Guard
 from viewer.window.layout import Layout
-from viewer.window.panels import dialogs, named_states, picture, scene, sides, status
+from viewer.window.panels import dialogs, picture, scene, sides, status
+from viewer.window.panels.named_states import preset_commands
 from viewer.window.ui import CaptureKind, Ui
 
 TITLE = "Shadowcull"
@@ -253,7 +254,7 @@ class App:
         return params
 
     def _menus(self) -> None:
-        menus.show(self.ui, [*scene.commands(self.ui), *self.ui.commands, *named_states.preset_commands(self.ui)])
+        menus.show(self.ui, lambda: [*scene.commands(self.ui), *self.ui.commands, *preset_commands(self.ui)])
         self.layout.show_menu()
         self.layout.show_workspaces()
 

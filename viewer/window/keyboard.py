@@ -120,11 +120,11 @@ class Keyboard:
 
     def update(self) -> None:
         """Look what is printed where, now and then."""
-        now = time.monotonic()
-        if now - self._looked >= _EVERY:
+        if (now := time.monotonic()) - self._looked >= _EVERY:
             self._looked = now
-            self._letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
-            self._chords = {}
+            letters = {name: self._printed(key) or "" for name, key in PLACES.items()}
+            if letters != self._letters:
+                self._letters, self._chords = letters, {}
 
     def chord(self, key: str) -> int:
         """Return ImGui's number of a key with its modifiers."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from imgui_bundle import ImVec2, imgui
 
@@ -83,11 +83,11 @@ def _close_list() -> None:
 # --- menus -----------------------------------------------------------------------------------------
 
 
-def show(ui: Ui, commands: Sequence[Command]) -> None:
-    """Show all menus of the menu bar, made of these commands."""
+def show(ui: Ui, commands: Callable[[], Sequence[Command]]) -> None:
+    """Show all menus of the menu bar, the open one made of these commands."""
     for name in MENUS:
         if imgui.begin_menu(name):
-            show_menu(ui, name, commands)
+            show_menu(ui, name, commands())
             imgui.end_menu()
 
 

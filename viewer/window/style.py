@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import cache
 
 from imgui_bundle import ImVec2, ImVec4, glfw_utils, hello_imgui, imgui, implot
 
@@ -113,14 +114,14 @@ _LENGTHS = {
 }  # fmt: skip
 
 _applied: tuple[float, str] = (0.0, "")
+_window = cache(glfw_utils.glfw_window_hello_imgui)  # which looks through the stack each time it is asked
 _first: tuple[float, float] | None = None  # how large Hello ImGui makes letters on the first screen, and its density
 
 
 def content_scale() -> float:
     """What the desktop wants everything enlarged by on the window's screen; needs a window."""
-    if sys.platform == "darwin":  # there windows are measured in points, and are enlarged with their letters
-        return 1.0
-    return float(max(glfw.get_window_content_scale(glfw_utils.glfw_window_hello_imgui())))
+    # On macOS windows are measured in points, and are enlarged with their letters.
+    return 1.0 if sys.platform == "darwin" else float(max(glfw.get_window_content_scale(_window())))
 
 
 def _scale_letters() -> None:
@@ -155,6 +156,7 @@ def forget() -> None:
     """A new window has no style yet."""
     global _applied, _first
     _applied, _first = (0.0, ""), None
+    _window.cache_clear()
 
 
 def fill_windows(filled: bool) -> None:

@@ -61,17 +61,17 @@ def dropping(d: Driver) -> None:
         assert d.c.notices.message is not None and d.c.notices.message.error, f"{path} was not refused"
         assert path.name in d.said and "\n" not in d.said
         assert d.c.session.scene is scene
-    lights = "\n".join(f"l {i} 5 3 0.1 0.1 0.1" for i in range(40))
+    lights = "\n".join(f"l {i} 5 3 0.1 0.1 0.1" for i in range(12))
     many = d.folder / "many.aff"
     many.write_text(Path(scene.path).read_text() + lights)
     d.drop(many, text).settle()
-    assert len(d.c.session.scene.lights) == 42
+    assert len(d.c.session.scene.lights) == 14
     dark = d.folder / "dark.nff"
     dark.write_text(
         "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 0.1\nresolution 8 8\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n"
     )
     d.c.session.set_draw(view=View.SHADOW)
-    d.c.settings.set_light(35)
+    d.c.settings.set_light(13)
     d.open(dark)
     assert missing(View.SHADOW, d.c.frame).text == "The scene has no lights."
     d.press("3")

@@ -72,7 +72,7 @@ def lamps(d: Driver) -> None:
     assert d.c.frame.settings.lamp_radius is None and d.c.scheduler.lamp_samples_shown == 1
 
     many = d.folder / "lights.aff"
-    lights = "".join(f"l {0.1 * i} 5 {0.05 * i} 0.02 0.02 0.02\n" for i in range(38))
+    lights = "".join(f"l {0.1 * i} 5 {0.05 * i} 0.02 0.02 0.02\n" for i in range(12))
     many.write_text(d.c.session.scene.path.read_text() + lights)
     d.open(many)
     _one_of_too_many(d)

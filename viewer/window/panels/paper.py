@@ -60,9 +60,7 @@ def show(ui: Ui) -> None:
         if s.now.remark:
             paragraph(s.now.remark, QUIET)
         if not s.now.changes:
-            paragraph(
-                "No line changes a mode in this frame. Backspace forgets all modes, so that they are set anew.", QUIET
-            )
+            paragraph("No line changes a mode in this frame. Backspace forgets all modes, to be set anew.", QUIET)
         _text(ui, s.now, s.place)
 
 
