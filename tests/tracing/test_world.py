@@ -63,7 +63,7 @@ def test_queries_agree_with_float64_in_random_scenes(accelerator):
     """Triangles, spheres and cones, static, moving, vanishing and deforming."""
     compared: Counter[str] = Counter()
 
-    @quickly(10)
+    @quickly(20)
     @given(scenes(), st.floats(0.0, END), st.integers(0, 2**32 - 1))
     def check(made: tracer.Scene, time: float, seed: int) -> None:
         world = tracer.World(made, time, accelerator)
