@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from viewer.util.screen import has_display, no_display_reason
 
@@ -19,6 +20,11 @@ BART = Path(__file__).resolve().parents[1].parent / "shared" / "bart"
 _HOME = tempfile.TemporaryDirectory(prefix="shadowcull-tests-")
 os.environ["SHADOWCULL_CONFIG_DIR"] = str(Path(_HOME.name) / "shadowcull")
 os.environ["XDG_CONFIG_HOME"] = _HOME.name
+
+
+# Hypothesis also draws constants of the sources that are loaded: examples would change with any of them, and with what
+# else is tested.
+providers._get_local_constants = lambda: providers._local_constants
 
 
 # What is imported and collected lives to the end: nobody looks through it for garbage, then or later.

@@ -90,9 +90,3 @@ def test_packages_grow_no_longer(package: str) -> None:
 
 def test_the_change_log_knows_this_version() -> None:
     assert f"## {project()['project']['version']}" in (ROOT / "CHANGELOG.md").read_text()
-
-
-def test_what_happens_in_each_frame_of_the_window_is_named_by_what_it_does() -> None:
-    """`viewer/window/app.py` lists it, in its order; nothing is called `follow`."""
-    found = [path for path in (ROOT / "viewer").rglob("*.py") if re.search(r"def (follow|tick)\b", path.read_text())]
-    assert not found
