@@ -20,7 +20,7 @@ from viewer.services.refinement import LampSamples, Refinement
 from viewer.services.render_request import FramesBefore, Newest, RenderRequest, Traced, as_asked, missing_buffers
 from viewer.services.render_thread import RenderThread
 from viewer.services.runs import missing_in, shown_of
-from viewer.state.methods import can_ask
+from viewer.state.methods import can_ask, missing
 from viewer.state.picking import same_place
 from viewer.state.view_state import ViewState
 from viewer.state.views import Record, View, can_draw
@@ -310,10 +310,11 @@ class FrameScheduler:
         if run is not None:
             lacks = draw.view is not view and missing_in(run, draw.view)
             return f"{shown_of(run)}   {title}{f' (this run {lacks})' if lacks else ''}"
-        if draw.view is view:
+        if self.frame is None or draw.view is view:
             return title
-        settings, asks = self.inputs.settings, self.frame is not None and can_ask(self.frame, draw.view)
+        settings, asks = self.inputs.settings, can_ask(self.frame, draw.view)
         comes = settings.record_fates if draw.view.records is Record.FATES else asks or draw.view.records is not None
+        comes &= draw.view.asks is None or missing(draw.view, self.frame) is None
         if not (settings.record_lights if draw.view is View.LIGHTS else comes):  # the picture says why
             return f"{draw.view.label}: not available here, {view.label.lower()} shown"
         counted = f" {self._counted} %" if self._counted and asks else ""

@@ -22,8 +22,7 @@ class Regret(CountView):
     key = "Shift+R"
     help = (
         "How many shadow rays of each pixel's primary hit the method certified has traced although the smallest cell "
-        "there could be proved to be lit, or dark: what a better method could still save. Counting may take half a "
-        "minute."
+        "there could be proved to be lit, or dark: what a better method could still save."
     )
     records = Record.FATES
     shows = REGRET

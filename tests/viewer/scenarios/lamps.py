@@ -1,4 +1,4 @@
-"""Lamps: made of points by a slider, refined at idle, seen by their penumbra, inspected, and found in a list."""
+"""Lamps: made of points by a slider, refined at idle, seen by their penumbra, and inspected."""
 
 from __future__ import annotations
 
@@ -13,12 +13,11 @@ from viewer.services.frame_scheduler import Activity
 from viewer.state import views as view_names
 from viewer.state.views import View
 from viewer.views import penumbra
-from viewer.window.panels.lights import LightFilters
 from viewer.window.panels.status import doing
 
 
 def lamps(d: Driver) -> None:
-    """Soft shadows come step by step, and are those of the renderer; many lights are listed as they are looked for."""
+    """Soft shadows come step by step, and are those of the renderer; of too many lights, one is looked at."""
     d.c.session.set_pace(target_fps=240.0)  # there is to be no time for many samples in motion
     d.settle()
     hard = d.c.frame.color
@@ -76,8 +75,6 @@ def lamps(d: Driver) -> None:
     many.write_text(d.c.session.scene.path.read_text() + lights)
     d.open(many)
     _one_of_too_many(d)
-    d.ui.state(LightFilters).texts["table"] = "light 3"
-    d.show_panel("Scene")
 
 
 def _one_of_too_many(d: Driver) -> None:

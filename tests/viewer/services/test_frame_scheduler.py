@@ -174,6 +174,9 @@ def test_what_reaches_pixels_is_recorded_where_it_is_shown_and_there_is_memory_f
     assert window.rest() == [(16, 2)] and window.renders.asked[-1].settings.record_lights
     window.session.set_draw(view=View.COLOR)
     assert window.rest() == [], "there is more than the picture needs"
+    window.session.set_draw(view=View.REGRET)
+    window.rest()
+    assert window.scheduler.title == "Regret: not available here, colour shown", "by a method without certificates"
     monkeypatch.setattr(views, "MOST_RECORDED", 128)
     window = Window()
     for view, title in (
