@@ -127,7 +127,7 @@ def _method(name: str, frame: Frame, counts: Sequence[Sequence[str]]) -> dict[st
     lights, of_modes = range(min(frame.lights, MOST_LIGHTS)), frame.settings.keeps_modes
     return {
         "name": name, "title": Method.parse(name).title, "counts": counts,
-        "pixels": _deflated(frame.pixels, np.uint8),
+        "pixels": _deflated(np.diff(frame.pixels.reshape(-1, 3), axis=0, prepend=np.uint8(0)), np.uint8),
         "occlusion": _deflated(frame.occlusion_mode, np.uint8) if of_modes else "",
         "shadow": [_deflated(frame.shadow_mode[..., k], np.uint8) for k in lights] if of_modes else [],
         "fate": [_deflated(frame.fate(k), np.uint8) for k in lights] if frame.fates is not None else [],
