@@ -19,7 +19,8 @@ from tracer.culling.fate import FATE, Fate
 from tracer.inspect.projection import seen_at
 from tracer.methods.certified import CertifiedCells
 from tracer.neighbours.certified.cells import ALONG_U, ALONG_V, CORNER, NORMAL
-from tracer.neighbours.certified.slack import Cancel, Report, SlackFinder, proved_cells
+from tracer.neighbours.certified.slack import Cancel, SlackFinder, proved_cells
+from tracer.scene.arrays import Report
 
 if TYPE_CHECKING:
     from tracer.frame import Frame

@@ -20,6 +20,7 @@ from tracer.neighbours.certified.certify import certify, make_scratch
 from tracer.neighbours.certified.tasks import DEEPEST, SMALLEST, put_cell_of
 from tracer.runtime.kernels import kernel, subkernel
 from tracer.runtime.parallel import for_each_chunk
+from tracer.scene.arrays import Report
 from tracer.visibility.budget import COUNTERS
 from tracer.visibility.occluders import Occluders
 from tracer.visibility.shaft import put_light
@@ -31,8 +32,6 @@ PART = 0.25  # of the diagonal of all that is static: slack is told up to that
 TRIED, HALVING = 256, 16  # radii of balls, and after how many of these they are half as large
 CHUNK = 64  # places that a thread takes at a time
 Cancel = Callable[[], bool] | None
-Report = Callable[[float], None]
-"""Told, by any thread, which part of all has been found."""
 
 
 @subkernel
