@@ -93,7 +93,7 @@ class FrameScheduler:
     def _report(self, part: float) -> None:
         """Note which part of the layers is there, as the renderer's threads say, and show it."""
         percent = int(100.0 * part) % 100
-        if percent != self._counted:
+        if percent > self._counted or percent == 0:  # threads report in any order
             self._counted = percent
             self._wake()
 

@@ -321,8 +321,10 @@ STEPS = (
         (
             Part(lambda c: c.session.playing or _at_least(EXAMINED)(c), _play),
             Part(_shows(View.COLOR), _show_alone, True),
-            Part(_at_least(EXAMINED), _play),
+            Part(_at_least(EXAMINED), lambda c: None, True),
+            Part(lambda c: not c.session.playing, _stop),  # or the path would begin anew, from afar
         ),
+        still=True,
         in_figure_4=True,
     ),
     Step(

@@ -121,6 +121,7 @@ def _in_saved_pictures(d: Driver) -> None:
 def fates(d: Driver) -> None:
     """The keys of the views of fates; another light asks for no frame; no other view flashes up in motion."""
     d.fix_resolution(240, 135)
+    d.c.session.set_pace(target_fps=120.0)  # so that no machine is fast enough for whole pictures in motion
     d.c.settings.change(method="paper")
     d.open(embedded_scenes()["default"])
     d.press(View.FATE.key).settle()

@@ -80,8 +80,7 @@ def _by_hand(d: Driver) -> None:
     _stage(d)
     d.settle().press("8").wait(lambda: tour.step is RULE, "the wrong pixels", 60.0)
     d.expect("it covers", "when it was examined last")
-    d.press("Space").wait(lambda: tour.step is NEXT, "the shadow that came", 60.0)
-    d.press("Space").settle()
+    d.press("Space").wait(lambda: tour.step is NEXT, "the shadow that came", 60.0).settle()
     assert d.c.session.frame >= EXAMINED and d.c.frame.width == d.c.frame.height == SIDE
     assert d.c.session.draw.view is View.COLOR and d.c.selection.picked is None, "nothing covers the shadow that came"
     for command in NEXT.commands:
