@@ -12,7 +12,7 @@ from tracer.runtime.kernels import kernel
 from tracer.runtime.parallel import for_each_chunk
 from tracer.simd import ones
 
-CHUNK = 1 << 16  # units that a thread compares at a time
+CHUNK = 1 << 18  # units that a thread compares at a time: fewer are compared sooner than another thread wakes
 LOWER_BITS = 0x5555_5555_5555_5554  # the lower bit of each light's shadow mode in a word
 
 
@@ -60,6 +60,8 @@ def _compare(before, after, first, last, units, now, gained):
     for unit in range(first, last):
         old, new = np.int64(before[unit]), np.int64(after[unit])
         units[old & 3, new & 3] += 1
+        if (old | new) < 4:  # no light is known
+            continue
         # Each light has two bits: the lower set alone is FULL_SHADOW, the upper NON_SHADOW, both PARTIAL_SHADOW.
         old_lower, old_upper = old & LOWER_BITS, (old >> 1) & LOWER_BITS
         lower, upper = new & LOWER_BITS, (new >> 1) & LOWER_BITS

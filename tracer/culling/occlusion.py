@@ -69,8 +69,8 @@ def occlusion_testing(world, camera, primitives, first, units, symmetric, first_
     words (units,) are modes as the last frame left them: what is hidden matters of those alone that are not
     FULLY_RENDERED.  With `symmetric` the reference pixel's ray is also tested against the current unit.
     """
-    world, primitives, words, hidden = without_refcount((world, primitives, words, hidden))
-    first, units = without_refcount((first, units))
+    world, camera, primitives = without_refcount((world, camera, primitives))
+    first, units, words, hidden = without_refcount((first, units, words, hidden))
     height, width = primitives.shape
     spare, tests = local_memory(64), 0
     for y in range(first_row, last_row):
