@@ -180,6 +180,13 @@ class Animation:
     def _scales(self) -> tuple[list[int], _Segments | None]:
         return self._pack([t.scale for t in self.tracks.values()], _curve_knots)
 
+    @cached_property
+    def _camera_rotation(self) -> _Segments | None:
+        """Without the camera's scale, which counts in `matrices`."""
+        tracks = self.tracks.get("camera")
+        with np.errstate(all="ignore"):
+            return self._pack([tracks.rotation if tracks is not None else None], _rotation_knots)[1]
+
     @staticmethod
     def _pack(tracks: list[Keys | None], knots: Callable[[Keys], Float64]) -> tuple[list[int], _Segments | None]:
         which = [i for i, keys in enumerate(tracks) if keys is not None]
@@ -243,10 +250,9 @@ class Animation:
         position, direction, up = base.position, base.direction, base.up
         if tracks.translation is not None:
             position = vector(self.translation("camera", time))
-        if tracks.rotation is not None:
+        if self._camera_rotation is not None:
             with np.errstate(all="ignore"):
-                segments = _Segments.of([tracks.rotation], [_rotation_knots(tracks.rotation)])
-                rotation = _squad(*segments.find(time))[0]
+                rotation = _squad(*self._camera_rotation.find(time))[0]
             rotation = rotation if np.isfinite(rotation).all() else np.eye(3)
             direction, up = vector(-rotation[:, 2]), vector(rotation[:, 1])
         return Camera(position, direction, up, base.angle)
