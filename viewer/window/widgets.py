@@ -246,8 +246,8 @@ def size_field(size: tuple[int, int], longest: int, say: Callable[[str], None]) 
 
 
 def wide_button(label: str, tip: str = "", columns: int = 1) -> bool:
-    """A button that fills its share of the width; where that is too narrow for a label of an icon and words, the words
-    are in the tip alone."""
+    """A button that shares what is left of the line with those after it, `columns` in all; where that is too narrow for
+    a label of an icon and words, the words are in the tip alone."""
     style = imgui.get_style()
     width = (imgui.get_content_region_avail().x - style.item_spacing.x * (columns - 1)) / columns
     text, _, _ = label.partition("##")

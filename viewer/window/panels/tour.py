@@ -30,15 +30,15 @@ def show(ui: Ui) -> None:
             (tour.skip if done else tour.show)()
         imgui.same_line()
         imgui.begin_disabled(step is STEPS[0])
-        if wide_button("Back", columns=3):
+        if wide_button("Back", columns=2):
             tour.back()
         imgui.end_disabled()
         imgui.same_line()
-        if wide_button("Next", columns=3):
+        if wide_button("Next"):
             tour.skip()
     text = tour.text(step) if ui.controller.frame is not None else "You can begin as soon as there is a picture."
     paragraph(text, QUIET)
     for number, name in enumerate(step.commands):
         if number:
             imgui.same_line()
-        menus.button(ui, name, _ICONS[number], columns=len(step.commands))
+        menus.button(ui, name, _ICONS[number], columns=len(step.commands) - number)
