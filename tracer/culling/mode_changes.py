@@ -60,8 +60,6 @@ def _compare(before, after, first, last, units, now, gained):
     for unit in range(first, last):
         old, new = np.int64(before[unit]), np.int64(after[unit])
         units[old & 3, new & 3] += 1
-        if (old | new) < 4:  # no light is known
-            continue
         # Each light has two bits: the lower set alone is FULL_SHADOW, the upper NON_SHADOW, both PARTIAL_SHADOW.
         old_lower, old_upper = old & LOWER_BITS, (old >> 1) & LOWER_BITS
         lower, upper = new & LOWER_BITS, (new >> 1) & LOWER_BITS

@@ -180,13 +180,6 @@ class Animation:
     def _scales(self) -> tuple[list[int], _Segments | None]:
         return self._pack([t.scale for t in self.tracks.values()], _curve_knots)
 
-    @cached_property
-    def _camera_rotation(self) -> _Segments | None:
-        """Without the camera's scale, which counts in `matrices`."""
-        tracks = self.tracks.get("camera")
-        with np.errstate(all="ignore"):
-            return self._pack([tracks.rotation if tracks is not None else None], _rotation_knots)[1]
-
     @staticmethod
     def _pack(tracks: list[Keys | None], knots: Callable[[Keys], Float64]) -> tuple[list[int], _Segments | None]:
         which = [i for i, keys in enumerate(tracks) if keys is not None]
@@ -250,11 +243,12 @@ class Animation:
         position, direction, up = base.position, base.direction, base.up
         if tracks.translation is not None:
             position = vector(self.translation("camera", time))
-        if self._camera_rotation is not None:
-            with np.errstate(all="ignore"):
-                rotation = _squad(*self._camera_rotation.find(time))[0]
-            rotation = rotation if np.isfinite(rotation).all() else np.eye(3)
-            direction, up = vector(-rotation[:, 2]), vector(rotation[:, 1])
+        with np.errstate(all="ignore"):
+            which, segments = self._rotations
+            if tracks.rotation is not None and segments is not None:  # without its scale, which its matrix has
+                rotation = _squad(*segments.find(time))[which.index(self._numbers["camera"])]
+                rotation = rotation if np.isfinite(rotation).all() else np.eye(3)
+                direction, up = vector(-rotation[:, 2]), vector(rotation[:, 1])
         return Camera(position, direction, up, base.angle)
 
 

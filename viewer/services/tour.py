@@ -36,14 +36,13 @@ _PLACES = itertools.cycle(  # where a shadow is looked for, in parts of the pict
 
 @dataclass(frozen=True)
 class Step:
-    """See the module; `commands` can be run from the last one; time stands `still` before its last part; `in_figure_4`
-    it speaks of that scene alone."""
+    """See the module; `commands` can be run from the last one; `in_figure_4` it speaks of that scene alone, and time
+    stands still before its last part."""
 
     title: str
     text: str | Callable[[Controller], str]
     parts: tuple[Part, ...] = ()
     commands: tuple[str, ...] = ()
-    still: bool = False
     in_figure_4: bool = False
 
 
@@ -118,7 +117,7 @@ class Tour:
             self.skip()
             return
         part = self.step.parts[self._held]
-        if self.step.still and part is self.step.parts[-1]:
+        if self.step.in_figure_4 and part is self.step.parts[-1]:
             self._c.session.playing = False
         if self._shows or part.sets_stage:
             part.act(self._c)
@@ -313,7 +312,6 @@ STEPS = (
             Part(lambda c: not c.session.playing, _stop, True),
             Part(_shows_wrong, _show(View.DIFFERENCE)),
         ),
-        still=True,
         in_figure_4=True,
     ),
     Step(
@@ -324,7 +322,6 @@ STEPS = (
             Part(_at_least(EXAMINED), lambda c: None, True),
             Part(lambda c: not c.session.playing, _stop),  # or the path would begin anew, from afar
         ),
-        still=True,
         in_figure_4=True,
     ),
     Step(
