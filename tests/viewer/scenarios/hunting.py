@@ -58,7 +58,7 @@ def _from_the_inspector(d: Driver) -> None:
     taught = c.history.origins_of(c.frame, picked.primitive, wait=True)
     light, lesson = next((n, one) for n, one in enumerate(taught.lights) if one.lit >= 0)
     then = c.history.records[lesson.lit].state
-    d.scroll_down("Inspector")
+    d.wait(lambda: c.inspector.why is not None, "the answer, which moves what is below it").scroll_down("Inspector")
     d.click(f"//Inspector/**/{light} lit/picture {lesson.lit}##0").settle()
     assert (c.session.time, c.session.camera) == (then.time, then.camera or c.session.scene.camera_at(then.time))
 
