@@ -23,7 +23,7 @@ from viewer.state.methods import BY_MODES, with_base
 from viewer.state.views import View
 from viewer.util.resources import default_scene
 
-SECONDS = 2.0  # that what was done can be looked at
+SECONDS = 4.0  # that what was done can be looked at
 _PLAYED, _PICTURES = 20, 8  # frames of the path, and pictures of them, in which shadows are seen to move
 FAILS, EXAMINED = 20, 28
 """Frames of the scene figure4: the shadow is missing, and after the triangle was examined anew it is there."""
@@ -73,8 +73,8 @@ class Tour:
         """Return what to do in a step, as things are, with the keys that do it now; what is done is not asked again."""
         if self.lacks_figure_4:
             return "Open Figure 4 again: Show me."
-        if self.is_done and callable(step.text):
-            return ""
+        if self.is_done and step is STEPS[0]:
+            return _THE_SAME
         text = step.text if isinstance(step.text, str) else step.text(self._c)
         return re.sub(r"\{(.+?)\}", lambda name: self._key(name[1]), text)
 
@@ -260,10 +260,11 @@ def _how_to_toggle(c: Controller) -> str:
 def _rule_of_four(c: Controller) -> str:
     """Say how many times as many pixels the triangle of figure4 covers as when it was last examined."""
     now, before = (int(c.frame.pixel_count[0]), int(c.frame.highest_count[0])) if c.frame is not None else (0, 0)
+    told = "So it was: the shadow is there" if now < 2 * before else "Press {Play} to come near: the shadow appears"
     return (
         "A primitive that covers more than 4 times the pixels it had when it was examined last is examined anew "
-        "(§2.6). Press {Play} to come near: the shadow appears. Now it covers "
-        f"{now:,} pixels, and {before:,} when it was examined last: {now / max(before, 1):.1f} times."
+        f"(§2.6). {told}. Now it covers {now:,} pixels, and {before:,} when it was examined last: "
+        f"{now / max(before, 1):.1f} times."
     )
 
 
